@@ -1,0 +1,182 @@
+//! A polygon mesh with attributes at its corners.
+
+use glam::{DVec2, DVec3};
+
+/// Polygons over shared vertices. A *corner* is one vertex of one polygon; UVs and normals live at the corners, so
+/// that a seam or a hard edge needs no doubled vertex and the mesh stays closed.
+///
+/// Invariants, kept by the constructor: every polygon has three or more corners, every index is in range, every
+/// coordinate is finite, attributes have one entry a corner.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    name: String,
+    positions: Vec<DVec3>,
+    /// Vertex of each corner, polygon after polygon.
+    corners: Vec<u32>,
+    /// First corner of each polygon, and behind the last one the number of corners.
+    starts: Vec<u32>,
+    normals: Option<Vec<DVec3>>,
+    uvs: Option<Vec<DVec2>>,
+}
+
+/// Why data does not make a mesh.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeshError {
+    /// A polygon with fewer than three corners.
+    #[error("polygon {polygon} has {found} corner(s), and needs at least 3")]
+    TooFewCorners {
+        /// Index of the polygon.
+        polygon: usize,
+        /// Its corners.
+        found: usize,
+    },
+    /// A corner that names a vertex that is not there.
+    #[error("polygon {polygon} uses vertex {vertex}, but there are only {vertices} vertices")]
+    IndexOutOfRange {
+        /// Index of the polygon.
+        polygon: usize,
+        /// The vertex it names.
+        vertex: u32,
+        /// Vertices of the mesh.
+        vertices: usize,
+    },
+    /// A coordinate, normal or UV that is not a number or is infinite.
+    #[error("vertex or corner {index} of the {what} is not finite")]
+    NotFinite {
+        /// Which attribute.
+        what: &'static str,
+        /// Index of the vertex or corner.
+        index: usize,
+    },
+    /// An attribute with another length than the corners.
+    #[error("{found} {what} given for {corners} corners")]
+    AttributeCount {
+        /// Which attribute.
+        what: &'static str,
+        /// Entries found.
+        found: usize,
+        /// Corners of the mesh.
+        corners: usize,
+    },
+    /// More vertices or corners than 32-bit indices reach.
+    #[error("the mesh has more than 4 294 967 295 vertices or corners")]
+    TooLarge,
+}
+
+impl Mesh {
+    /// Makes a mesh from vertices and polygons (each a list of vertex indices, counter-clockwise seen from outside).
+    ///
+    /// # Errors
+    /// [`MeshError`] where a polygon is too small, an index is out of range or a coordinate is not finite.
+    pub fn new<P: AsRef<[u32]>>(
+        positions: Vec<DVec3>,
+        polygons: impl IntoIterator<Item = P>,
+    ) -> Result<Self, MeshError> {
+        if positions.len() > u32::MAX as usize {
+            return Err(MeshError::TooLarge);
+        }
+        if let Some(index) = positions.iter().position(|p| !p.is_finite()) {
+            return Err(MeshError::NotFinite { what: "positions", index });
+        }
+        let mut corners = Vec::new();
+        let mut starts = vec![0];
+        for (polygon, indices) in polygons.into_iter().enumerate() {
+            let indices = indices.as_ref();
+            if indices.len() < 3 {
+                return Err(MeshError::TooFewCorners { polygon, found: indices.len() });
+            }
+            if let Some(&vertex) = indices.iter().find(|v| **v as usize >= positions.len()) {
+                return Err(MeshError::IndexOutOfRange { polygon, vertex, vertices: positions.len() });
+            }
+            corners.extend_from_slice(indices);
+            starts.push(u32::try_from(corners.len()).map_err(|_| MeshError::TooLarge)?);
+        }
+        Ok(Self { name: String::new(), positions, corners, starts, normals: None, uvs: None })
+    }
+
+    /// The same mesh under a name.
+    #[must_use]
+    pub fn named(mut self, name: impl Into<String>) -> Self {
+        self.name = name.into();
+        self
+    }
+
+    /// The same mesh with a unit normal at each corner.
+    ///
+    /// # Errors
+    /// [`MeshError`] where their number is not that of the corners, or one is not finite.
+    pub fn with_normals(mut self, normals: Vec<DVec3>) -> Result<Self, MeshError> {
+        if normals.len() != self.corners.len() {
+            return Err(MeshError::AttributeCount {
+                what: "normals",
+                found: normals.len(),
+                corners: self.corners.len(),
+            });
+        }
+        if let Some(index) = normals.iter().position(|n| !n.is_finite()) {
+            return Err(MeshError::NotFinite { what: "normals", index });
+        }
+        self.normals = Some(normals);
+        Ok(self)
+    }
+
+    /// The same mesh with a UV at each corner (u along the section, v along the stack, origin bottom left).
+    ///
+    /// # Errors
+    /// [`MeshError`] where their number is not that of the corners, or one is not finite.
+    pub fn with_uvs(mut self, uvs: Vec<DVec2>) -> Result<Self, MeshError> {
+        if uvs.len() != self.corners.len() {
+            return Err(MeshError::AttributeCount { what: "UVs", found: uvs.len(), corners: self.corners.len() });
+        }
+        if let Some(index) = uvs.iter().position(|n| !n.is_finite()) {
+            return Err(MeshError::NotFinite { what: "UVs", index });
+        }
+        self.uvs = Some(uvs);
+        Ok(self)
+    }
+
+    /// Name; may be empty.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Vertices, metres.
+    pub fn positions(&self) -> &[DVec3] {
+        &self.positions
+    }
+
+    /// Number of polygons.
+    pub fn polygon_count(&self) -> usize {
+        self.starts.len().saturating_sub(1)
+    }
+
+    /// Vertex indices of polygon `index`, counter-clockwise seen from outside.
+    pub fn polygon(&self, index: usize) -> &[u32] {
+        &self.corners[self.corner_range(index)]
+    }
+
+    /// Corner indices of polygon `index`: where its entries stand in [`Mesh::normals`] and [`Mesh::uvs`].
+    pub fn corner_range(&self, index: usize) -> std::ops::Range<usize> {
+        self.starts[index] as usize..self.starts[index + 1] as usize
+    }
+
+    /// The polygons in order, as vertex indices.
+    pub fn polygons(&self) -> impl ExactSizeIterator<Item = &[u32]> {
+        (0..self.polygon_count()).map(|index| self.polygon(index))
+    }
+
+    /// Vertex of each corner, polygon after polygon.
+    pub fn corners(&self) -> &[u32] {
+        &self.corners
+    }
+
+    /// Unit normal of each corner, where there are normals.
+    pub fn normals(&self) -> Option<&[DVec3]> {
+        self.normals.as_deref()
+    }
+
+    /// UV of each corner, where there are UVs.
+    pub fn uvs(&self) -> Option<&[DVec2]> {
+        self.uvs.as_deref()
+    }
+}
