@@ -10,5 +10,6 @@ pub mod deform;
 pub mod file_format;
 pub mod generate;
 pub mod mesh;
+pub mod scene;
 pub mod sections;
 pub mod surface;

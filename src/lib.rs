@@ -1,0 +1,3 @@
+//! The headless command of Maquette, as a library: pictures and commands.
+
+pub mod picture;
