@@ -1,0 +1,210 @@
+//! The node kinds, wire types and conversions that a graph may use.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use crate::literal::{Choice, Colour, FilePath, Strokes, Vector};
+use crate::node_kind::NodeKind;
+use crate::value::{Value, Wire, WireType};
+
+type ConvertFn = dyn Fn(&Value) -> Result<Value, String> + Send + Sync;
+
+/// An implicit conversion between two wire types.
+#[derive(Clone)]
+pub(crate) struct Conversion {
+    from: WireType,
+    to: WireType,
+    pub(crate) convert: Arc<ConvertFn>,
+}
+
+/// Node kinds by name, wire types and conversions.
+///
+/// ```
+/// use maquette_graph::{Catalogue, NodeKind};
+/// let mut catalogue = Catalogue::new();
+/// catalogue.register(NodeKind::declare("nothing", 1, "test", "Does nothing."))?;
+/// assert!(catalogue.register(NodeKind::declare("nothing", 1, "test", "Again.")).is_err());
+/// # Ok::<(), maquette_graph::CatalogueError>(())
+/// ```
+#[derive(Clone)]
+pub struct Catalogue {
+    kinds: BTreeMap<String, Arc<NodeKind>>,
+    wires: BTreeMap<&'static str, WireType>,
+    conversions: Vec<Conversion>,
+}
+
+/// Why a declaration was refused.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum CatalogueError {
+    /// Two kinds of one name.
+    #[error("node kind \"{0}\" is registered twice")]
+    DuplicateKind(String),
+    /// Two ports of one name.
+    #[error("node kind \"{kind}\" declares two {what} named \"{port}\"")]
+    DuplicatePort {
+        /// The kind.
+        kind: String,
+        /// Inputs or outputs.
+        what: &'static str,
+        /// The name.
+        port: String,
+    },
+    /// Two wire types of one name.
+    #[error("two different wire types are named \"{0}\"")]
+    DuplicateWire(String),
+    /// A default outside its own range.
+    #[error("node kind \"{kind}\", input \"{port}\": the default does not fit: {reason}")]
+    BadDefault {
+        /// The kind.
+        kind: String,
+        /// The input.
+        port: String,
+        /// Why.
+        reason: String,
+    },
+    /// Two conversions for one pair.
+    #[error("a conversion from {0} to {1} is declared twice")]
+    DuplicateConversion(&'static str, &'static str),
+}
+
+impl Default for Catalogue {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Catalogue {
+    /// A catalogue with the built-in wire types and conversions and no kinds.
+    pub fn new() -> Self {
+        let mut catalogue = Self { kinds: BTreeMap::new(), wires: BTreeMap::new(), conversions: Vec::new() };
+        let built_in = [
+            WireType::of::<f64>(),
+            WireType::of::<i64>(),
+            WireType::of::<bool>(),
+            WireType::of::<String>(),
+            WireType::of::<Choice>(),
+            WireType::of::<Vector>(),
+            WireType::of::<Colour>(),
+            WireType::of::<FilePath>(),
+            WireType::of::<Strokes>(),
+        ];
+        catalogue.wires.extend(built_in.map(|wire| (wire.name(), wire)));
+        catalogue.add_conversion::<i64, f64>(|integer| {
+            #[expect(clippy::cast_precision_loss, reason = "what would be lost is refused")]
+            let number = *integer as f64;
+            // 2^53: beyond, neighbouring integers share a number.
+            if integer.unsigned_abs() <= 1 << 53 {
+                Ok(number)
+            } else {
+                Err(format!("{integer} is too large to become a number without loss"))
+            }
+        });
+        catalogue
+    }
+
+    /// Adds a node kind, and the wire types of its ports.
+    ///
+    /// # Errors
+    /// A name that is taken, a default that does not fit.
+    pub fn register(&mut self, kind: NodeKind) -> Result<(), CatalogueError> {
+        let name = kind.name().to_owned();
+        if self.kinds.contains_key(&name) {
+            return Err(CatalogueError::DuplicateKind(name));
+        }
+        let inputs: Vec<_> = kind.inputs().iter().map(|i| &i.name).collect();
+        let outputs: Vec<_> = kind.outputs().iter().map(|o| &o.name).collect();
+        for (what, ports) in [("inputs", inputs), ("outputs", outputs)] {
+            if let Some(port) = ports.iter().enumerate().find_map(|(i, p)| ports[..i].contains(p).then_some(*p)) {
+                return Err(CatalogueError::DuplicatePort { kind: name, what, port: port.clone() });
+            }
+        }
+        for input in kind.inputs() {
+            if let Some(reason) = input.default.as_ref().and_then(|d| input.refuses(d)) {
+                return Err(CatalogueError::BadDefault { kind: name, port: input.name.clone(), reason });
+            }
+        }
+        let wires = kind.inputs().iter().map(|i| i.wire).chain(kind.outputs().iter().map(|o| o.wire));
+        for wire in wires {
+            if *self.wires.entry(wire.name()).or_insert(wire) != wire {
+                return Err(CatalogueError::DuplicateWire(wire.name().to_owned()));
+            }
+        }
+        self.kinds.insert(name, Arc::new(kind));
+        Ok(())
+    }
+
+    fn add_conversion<A: Wire, B: Wire>(
+        &mut self,
+        convert: impl Fn(&A) -> Result<B, String> + Send + Sync + 'static,
+    ) -> bool {
+        let (from, to) = (WireType::of::<A>(), WireType::of::<B>());
+        if self.find_conversion(from, to).is_some() {
+            return false;
+        }
+        let convert = Arc::new(move |value: &Value| match value.get::<A>() {
+            Some(value) => convert(value).map(Value::new),
+            None => Err(format!("a {} arrived where a {from} was expected", value.wire())),
+        });
+        self.conversions.push(Conversion { from, to, convert });
+        true
+    }
+
+    /// Declares the implicit conversion from `A` to `B`. Only where nothing is lost; a value that would lose
+    /// something is refused by the function, with the reason.
+    ///
+    /// # Errors
+    /// The pair has one already.
+    pub fn conversion<A: Wire, B: Wire>(
+        &mut self,
+        convert: impl Fn(&A) -> Result<B, String> + Send + Sync + 'static,
+    ) -> Result<(), CatalogueError> {
+        if self.add_conversion(convert) {
+            Ok(())
+        } else {
+            Err(CatalogueError::DuplicateConversion(A::NAME, B::NAME))
+        }
+    }
+
+    pub(crate) fn find_conversion(&self, from: WireType, to: WireType) -> Option<&Conversion> {
+        self.conversions.iter().find(|c| c.from == from && c.to == to)
+    }
+
+    /// Whether a wire of type `from` may enter an input of type `to`.
+    pub fn fits(&self, from: WireType, to: WireType) -> bool {
+        from == to || self.find_conversion(from, to).is_some()
+    }
+
+    /// The implicit conversions, as pairs of types.
+    pub fn conversions(&self) -> impl Iterator<Item = (WireType, WireType)> + '_ {
+        self.conversions.iter().map(|c| (c.from, c.to))
+    }
+
+    /// The kind of that name.
+    pub fn kind(&self, name: &str) -> Option<&Arc<NodeKind>> {
+        self.kinds.get(name)
+    }
+
+    /// All kinds by name.
+    pub fn kinds(&self) -> impl ExactSizeIterator<Item = &Arc<NodeKind>> {
+        self.kinds.values()
+    }
+
+    /// All wire types by name.
+    pub fn wires(&self) -> impl ExactSizeIterator<Item = WireType> + '_ {
+        self.wires.values().copied()
+    }
+
+    /// The kind whose name is most like a misspelt one.
+    pub fn suggest(&self, name: &str) -> Option<&str> {
+        closest(name, self.kinds.keys().map(String::as_str))
+    }
+}
+
+/// The candidate most like a misspelt name, where one is alike enough to be meant.
+pub(crate) fn closest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    candidates
+        .map(|candidate| (strsim::jaro_winkler(name, candidate), candidate))
+        .filter(|(likeness, _)| *likeness > 0.75)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, candidate)| candidate)
+}

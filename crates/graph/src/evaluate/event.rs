@@ -1,0 +1,97 @@
+//! What happens during an evaluation, as it happens.
+
+use std::fmt;
+use std::sync::Mutex;
+use std::time::Duration;
+
+use crate::evaluate::Failure;
+use crate::graph::NodeId;
+
+/// Something happened to a node.
+#[derive(Clone, Debug)]
+pub struct Event<'a> {
+    /// The node.
+    pub node: NodeId,
+    /// Its name.
+    pub name: &'a str,
+    /// What happened.
+    pub kind: EventKind<'a>,
+}
+
+/// What happened.
+#[derive(Clone, Debug)]
+pub enum EventKind<'a> {
+    /// So many nodes may have to run; fewer do where the memo answers. Comes once, first, with the first target.
+    Planned(usize),
+    /// It began to run.
+    Started,
+    /// So much of it is done, 0 to 1.
+    Progress(f64),
+    /// The memo answered in its place.
+    Hit,
+    /// It ran.
+    Finished(Duration),
+    /// It failed.
+    Failed(&'a Failure),
+    /// It could not run, because these nodes failed.
+    Waiting(&'a [String]),
+    /// It was stopped.
+    Cancelled,
+}
+
+impl fmt::Display for Event<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let name = self.name;
+        match &self.kind {
+            EventKind::Planned(count) => write!(f, "planned {count}"),
+            EventKind::Started => write!(f, "started {name}"),
+            EventKind::Progress(fraction) => write!(f, "progress {name} {:.0}%", fraction * 100.0),
+            EventKind::Hit => write!(f, "hit {name}"),
+            EventKind::Finished(_) => write!(f, "finished {name}"),
+            EventKind::Failed(failure) => write!(f, "failed {name}: {failure}"),
+            EventKind::Waiting(on) => write!(f, "waiting {name} on {}", on.join(", ")),
+            EventKind::Cancelled => write!(f, "cancelled {name}"),
+        }
+    }
+}
+
+/// Listens to an evaluation; called from the threads that run the nodes, so it must be quick.
+pub trait Events: Sync {
+    /// Something happened.
+    fn event(&self, event: &Event<'_>);
+}
+
+/// Listens to nothing.
+impl Events for () {
+    fn event(&self, _: &Event<'_>) {}
+}
+
+impl<F: Fn(&Event<'_>) + Sync> Events for F {
+    fn event(&self, event: &Event<'_>) {
+        self(event);
+    }
+}
+
+/// Collects events as lines of text, for tests of what ran.
+#[derive(Debug, Default)]
+pub struct EventLog(Mutex<Vec<String>>);
+
+impl EventLog {
+    /// The names of the nodes that ran, in the order in which they finished; the log is empty afterwards.
+    pub fn take_ran(&self) -> Vec<String> {
+        self.take().iter().filter_map(|line| line.strip_prefix("finished ").map(str::to_owned)).collect()
+    }
+
+    /// The lines; the log is empty afterwards.
+    pub fn take(&self) -> Vec<String> {
+        self.0.lock().map(|mut lines| std::mem::take(&mut *lines)).unwrap_or_default()
+    }
+}
+
+impl Events for EventLog {
+    fn event(&self, event: &Event<'_>) {
+        if let Ok(mut lines) = self.0.lock() {
+            lines.push(event.to_string());
+        }
+    }
+}

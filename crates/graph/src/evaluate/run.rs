@@ -1,0 +1,233 @@
+//! Runs the steps of a plan, on one thread or many.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
+
+use crate::evaluate::memo::{Entry, Memo};
+use crate::evaluate::plan::{Plan, Step, Supply, blame_name, failure, gather, key, panic_message};
+use crate::evaluate::{CancelToken, Event, EventKind, Events, Failure};
+use crate::graph::Graph;
+use crate::ports::{NodeError, Ports};
+use crate::value::{ContentHash, Value};
+
+/// What became of a step.
+#[derive(Clone)]
+pub(crate) enum Ended {
+    /// It has a result, good or bad.
+    Entry { key: Option<ContentHash>, entry: Arc<Entry>, ran: bool },
+    /// These nodes failed before it.
+    Waiting(Vec<String>),
+    /// It was stopped, or never began.
+    Cancelled,
+}
+
+pub(crate) struct Runner<'a> {
+    pub(crate) graph: &'a Graph,
+    pub(crate) plan: &'a Plan,
+    pub(crate) memo: &'a Memo,
+    pub(crate) base: &'a Path,
+    pub(crate) cancel: &'a CancelToken,
+    pub(crate) events: &'a dyn Events,
+}
+
+/// Working state of one step. Values are dropped as soon as the last step that takes them has run.
+struct State {
+    pending: AtomicUsize,
+    takers: AtomicUsize,
+    values: Mutex<Option<Arc<[Value]>>>,
+    ended: Mutex<Option<Ended>>,
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    // Each holds one value that is replaced whole, so a poisoned lock still guards a whole value.
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Runner<'_> {
+    /// Runs all steps; one entry per step.
+    pub(crate) fn run(&self, pool: Option<&rayon::ThreadPool>) -> Vec<Ended> {
+        let states: Vec<State> = self
+            .plan
+            .steps
+            .iter()
+            .map(|step| State {
+                pending: AtomicUsize::new(step.waits_for),
+                takers: AtomicUsize::new(step.dependents.len()),
+                values: Mutex::new(None),
+                ended: Mutex::new(None),
+            })
+            .collect();
+        match pool.filter(|_| !self.is_chain()) {
+            None => (0..states.len()).for_each(|step| self.run_step(&states, step)),
+            Some(pool) => pool.scope(|scope| {
+                for (step, _) in self.plan.steps.iter().enumerate().filter(|(_, s)| s.waits_for == 0) {
+                    let states = &states;
+                    scope.spawn(move |scope| self.run_from(states, step, scope));
+                }
+            }),
+        }
+        states.into_iter().map(|s| locked(&s.ended).take().unwrap_or(Ended::Cancelled)).collect()
+    }
+
+    /// Whether no two steps could ever run at the same time, so that a thread pool has nothing to offer.
+    fn is_chain(&self) -> bool {
+        let steps = &self.plan.steps;
+        steps.iter().filter(|s| s.waits_for == 0).count() <= 1 && steps.iter().all(|s| s.dependents.len() <= 1)
+    }
+
+    fn run_from<'s>(&'s self, states: &'s [State], mut step: usize, scope: &rayon::Scope<'s>) {
+        loop {
+            self.run_step(states, step);
+            // The first dependent that becomes ready runs here: a chain never changes threads.
+            let mut next = None;
+            for &dependent in &self.plan.steps[step].dependents {
+                if states[dependent].pending.fetch_sub(1, Ordering::AcqRel) == 1 {
+                    if next.is_none() {
+                        next = Some(dependent);
+                    } else {
+                        scope.spawn(move |scope| self.run_from(states, dependent, scope));
+                    }
+                }
+            }
+            match next {
+                Some(ready) => step = ready,
+                None => return,
+            }
+        }
+    }
+
+    fn emit(&self, step: &Step, kind: EventKind<'_>) {
+        let name = self.graph.node(step.node).map_or("", |node| node.name());
+        self.events.event(&Event { node: step.node, name, kind });
+    }
+
+    fn run_step(&self, states: &[State], index: usize) {
+        let step = &self.plan.steps[index];
+        let ended = self.result(states, step);
+        match &ended {
+            Ended::Entry { entry, ran, .. } => {
+                match (&entry.result, ran) {
+                    (_, false) => self.emit(step, EventKind::Hit),
+                    (Ok(_), true) => self.emit(step, EventKind::Finished(entry.duration)),
+                    (Err(failure), true) => self.emit(step, EventKind::Failed(failure)),
+                }
+                if let Ok(values) = &entry.result
+                    && !step.dependents.is_empty()
+                {
+                    *locked(&states[index].values) = Some(values.clone());
+                }
+            }
+            Ended::Waiting(on) => self.emit(step, EventKind::Waiting(on)),
+            Ended::Cancelled => self.emit(step, EventKind::Cancelled),
+        }
+        *locked(&states[index].ended) = Some(self.slimmed(step, ended));
+        let mut sources: Vec<usize> = step.supplies.iter().filter_map(scheduled_source).collect();
+        sources.sort_unstable();
+        sources.dedup();
+        for source in sources {
+            if states[source].takers.fetch_sub(1, Ordering::AcqRel) == 1 {
+                *locked(&states[source].values) = None;
+            }
+        }
+    }
+
+    /// Without the values, where nobody asks for them after the evaluation: the memo decides what stays.
+    fn slimmed(&self, step: &Step, ended: Ended) -> Ended {
+        match ended {
+            Ended::Entry { key, entry, ran } if !step.is_target && entry.result.is_ok() => {
+                let slim = Entry { result: Ok(Arc::default()), report: entry.report.clone(), duration: entry.duration };
+                Ended::Entry { key, entry: Arc::new(slim), ran }
+            }
+            other => other,
+        }
+    }
+
+    fn result(&self, states: &[State], step: &Step) -> Ended {
+        if let Some(stopped) = self.stopped_by_sources(states, step) {
+            return stopped;
+        }
+        if self.cancel.is_cancelled() {
+            return Ended::Cancelled;
+        }
+        let values = |source: usize, output: usize| {
+            locked(&states[source].values).as_ref().and_then(|values| values.get(output).cloned())
+        };
+        let failed = |failure: Failure| Ended::Entry {
+            key: None,
+            entry: Arc::new(Entry { result: Err(failure), report: Arc::default(), duration: Default::default() }),
+            ran: true,
+        };
+        let inputs = match gather(&step.kind, &step.supplies, values) {
+            Ok(inputs) => inputs,
+            Err(failure) => return failed(failure),
+        };
+        let key = match key(&step.kind, &inputs, self.base, self.cancel) {
+            Ok(Some(key)) => key,
+            Ok(None) => return Ended::Cancelled,
+            Err(failure) => return failed(failure),
+        };
+        if let Some(entry) = self.memo.get(key) {
+            return Ended::Entry { key: Some(key), entry, ran: false };
+        }
+        self.emit(step, EventKind::Started);
+        let begun = Instant::now();
+        let result = self.call(step, &inputs);
+        let duration = begun.elapsed();
+        let (result, report) = match result {
+            // A node may answer a cancellation with an error of its own; that says nothing about its inputs.
+            Err(_) if self.cancel.is_cancelled() => return Ended::Cancelled,
+            Err(NodeError::Cancelled) => return Ended::Cancelled,
+            Err(NodeError::Failed { input, message }) => {
+                (Err(failure(&step.kind, input, message)), Arc::default())
+            }
+            Ok((values, report)) => (Ok(values.into()), Arc::new(report)),
+        };
+        let entry = Arc::new(Entry { result, report, duration });
+        self.memo.insert(key, entry.clone());
+        Ended::Entry { key: Some(key), entry, ran: true }
+    }
+
+    fn stopped_by_sources(&self, states: &[State], step: &Step) -> Option<Ended> {
+        let mut waiting = Vec::new();
+        let mut cancelled = false;
+        for source in step.supplies.iter().filter_map(scheduled_source) {
+            match &*locked(&states[source].ended) {
+                Some(Ended::Entry { entry, .. }) if entry.result.is_err() => {
+                    let name = self.graph.node(self.plan.steps[source].node).map_or("", |node| node.name());
+                    blame_name(&mut waiting, name);
+                }
+                Some(Ended::Waiting(on)) => on.iter().for_each(|name| blame_name(&mut waiting, name)),
+                Some(Ended::Cancelled) => cancelled = true,
+                Some(Ended::Entry { .. }) | None => {}
+            }
+        }
+        if !waiting.is_empty() {
+            Some(Ended::Waiting(waiting))
+        } else if cancelled {
+            Some(Ended::Cancelled)
+        } else {
+            None
+        }
+    }
+
+    fn call(&self, step: &Step, inputs: &[Option<Value>]) -> Result<(Vec<Value>, crate::Report), NodeError> {
+        let kind = &*step.kind;
+        let Some(run) = kind.evaluate_fn() else {
+            return Err(NodeError::new(format!("the node kind \"{}\" does not say what it does", kind.name())));
+        };
+        let progress = |fraction: f64| self.emit(step, EventKind::Progress(fraction.clamp(0.0, 1.0)));
+        let mut ports = Ports::new(kind, inputs, self.base, self.cancel, &progress);
+        match catch_unwind(AssertUnwindSafe(|| run(&mut ports))) {
+            Ok(Ok(())) => ports.finish(),
+            Ok(Err(error)) => Err(error),
+            Err(panic) => Err(NodeError::new(panic_message(kind, panic.as_ref()))),
+        }
+    }
+}
+
+fn scheduled_source(supply: &Supply) -> Option<usize> {
+    if let Supply::Scheduled { step, .. } = supply { Some(*step) } else { None }
+}

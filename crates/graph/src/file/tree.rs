@@ -1,0 +1,135 @@
+//! The file as RON spells it, before anything is understood: names and pieces of its own text, whose places in the
+//! file are known because they are slices of it.
+
+use std::fmt;
+use std::marker::PhantomData;
+
+use ron::value::RawValue;
+use serde::Deserialize;
+use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
+
+/// Fields with a name, in the order of the file.
+pub(super) type Fields<'a> = Vec<(String, &'a RawValue)>;
+
+/// The whole file.
+#[derive(Debug, Default)]
+pub(super) struct FileTree<'a> {
+    pub(super) version: Option<&'a RawValue>,
+    pub(super) notes: Option<&'a RawValue>,
+    pub(super) nodes: Option<Entries<'a, NodeTree<'a>>>,
+    pub(super) layout: Option<Entries<'a, &'a RawValue>>,
+    pub(super) unknown: Fields<'a>,
+}
+
+/// One node.
+#[derive(Debug, Default)]
+pub(super) struct NodeTree<'a> {
+    pub(super) kind: Option<&'a RawValue>,
+    pub(super) note: Option<&'a RawValue>,
+    pub(super) inputs: Option<Entries<'a, &'a RawValue>>,
+    pub(super) unknown: Fields<'a>,
+}
+
+/// A map in the order of the file; names may occur twice.
+#[derive(Debug)]
+pub(super) struct Entries<'a, V>(pub(super) Vec<(&'a RawValue, V)>);
+
+struct FileVisitor;
+
+impl<'de> Visitor<'de> for FileVisitor {
+    type Value = FileTree<'de>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a graph: (version: 1, nodes: { ... })")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<FileTree<'de>, A::Error> {
+        let mut tree = FileTree::default();
+        while let Some(name) = map.next_key::<String>()? {
+            match name.as_str() {
+                "version" => once(&mut tree.version, &name, map.next_value()?)?,
+                "notes" => once(&mut tree.notes, &name, map.next_value()?)?,
+                "nodes" => once(&mut tree.nodes, &name, map.next_value()?)?,
+                "layout" => once(&mut tree.layout, &name, map.next_value()?)?,
+                _ => tree.unknown.push((name, map.next_value()?)),
+            }
+        }
+        Ok(tree)
+    }
+}
+
+fn once<T, E: serde::de::Error>(slot: &mut Option<T>, name: &str, value: T) -> Result<(), E> {
+    match slot.replace(value) {
+        None => Ok(()),
+        Some(_) => Err(E::custom(format!("the field \"{name}\" occurs twice"))),
+    }
+}
+
+impl<'de: 'a, 'a> Deserialize<'de> for FileTree<'a> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_struct("", &[], FileVisitor)
+    }
+}
+
+struct NodeVisitor;
+
+impl<'de> Visitor<'de> for NodeVisitor {
+    type Value = NodeTree<'de>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a node: (kind: \"...\", inputs: { ... })")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<NodeTree<'de>, A::Error> {
+        let mut tree = NodeTree::default();
+        while let Some(name) = map.next_key::<String>()? {
+            match name.as_str() {
+                "kind" => once(&mut tree.kind, &name, map.next_value()?)?,
+                "note" => once(&mut tree.note, &name, map.next_value()?)?,
+                "inputs" => once(&mut tree.inputs, &name, map.next_value()?)?,
+                _ => tree.unknown.push((name, map.next_value()?)),
+            }
+        }
+        Ok(tree)
+    }
+}
+
+impl<'de: 'a, 'a> Deserialize<'de> for NodeTree<'a> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_struct("", &[], NodeVisitor)
+    }
+}
+
+struct EntriesVisitor<V>(PhantomData<V>);
+
+impl<'de, V: Deserialize<'de>> Visitor<'de> for EntriesVisitor<V> {
+    type Value = Entries<'de, V>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a map: { \"name\": ..., }")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Entries<'de, V>, A::Error> {
+        let mut entries = Vec::new();
+        while let Some(name) = map.next_key::<&'de RawValue>()? {
+            if !trimmed(name).starts_with('"') && !trimmed(name).starts_with('r') {
+                return Err(A::Error::custom(format!("{} is not a name in double quotes", trimmed(name))));
+            }
+            entries.push((name, map.next_value()?));
+        }
+        Ok(Entries(entries))
+    }
+}
+
+impl<'de: 'a, 'a, V: Deserialize<'de>> Deserialize<'de> for Entries<'a, V> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(EntriesVisitor(PhantomData))
+    }
+}
+
+/// The text of a piece without the white space and comments around it.
+pub(super) fn trimmed(raw: &RawValue) -> &str {
+    let text = raw.get_ron().trim();
+    // Comments are rare; finding their end takes a second look at the whole piece.
+    if text.starts_with('/') || text.ends_with('/') || text.contains("//") { raw.trim().get_ron() } else { text }
+}

@@ -1,0 +1,216 @@
+//! What a node sees while it runs: its inputs, its outputs, a report, progress, cancellation.
+
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+
+use crate::evaluate::CancelToken;
+use crate::literal::{Choice, FilePath};
+use crate::node_kind::{ChoiceInput, Choices, Input, NodeKind, OptionalInput, Output};
+use crate::report::{Figure, Report};
+use crate::value::{Value, Wire};
+
+/// Why a node did not give a result. Any error converts into it with `?`.
+#[derive(Debug)]
+pub enum NodeError {
+    /// The evaluation was cancelled; never remembered as a failure.
+    Cancelled,
+    /// It failed.
+    Failed {
+        /// Index of the input at fault, where one is.
+        input: Option<usize>,
+        /// What is wrong and what to do.
+        message: String,
+    },
+}
+
+impl NodeError {
+    /// A failure in plain words: what is wrong and what to do.
+    pub fn new(message: impl Into<String>) -> Self {
+        Self::Failed { input: None, message: message.into() }
+    }
+}
+
+impl<E: std::error::Error> From<E> for NodeError {
+    fn from(error: E) -> Self {
+        Self::new(error.to_string())
+    }
+}
+
+/// Handles of inputs, for naming the port at fault.
+pub trait InputHandle {
+    /// Place among the inputs.
+    fn index(&self) -> usize;
+}
+
+impl<T> InputHandle for Input<T> {
+    fn index(&self) -> usize {
+        self.index
+    }
+}
+
+impl<T> InputHandle for OptionalInput<T> {
+    fn index(&self) -> usize {
+        self.index
+    }
+}
+
+impl<T> InputHandle for ChoiceInput<T> {
+    fn index(&self) -> usize {
+        self.index
+    }
+}
+
+/// Names the input at fault: `resample(curve, n).at(curves)?`.
+pub trait AtPort<T> {
+    /// The same result, its error laid at that input.
+    ///
+    /// # Errors
+    /// The error it had.
+    fn at(self, input: impl InputHandle) -> Result<T, NodeError>;
+}
+
+impl<T, E: Display> AtPort<T> for Result<T, E> {
+    fn at(self, input: impl InputHandle) -> Result<T, NodeError> {
+        self.map_err(|error| NodeError::Failed { input: Some(input.index()), message: error.to_string() })
+    }
+}
+
+/// A running node's view of the world.
+pub struct Ports<'a> {
+    kind: &'a NodeKind,
+    inputs: &'a [Option<Value>],
+    outputs: Vec<Option<Value>>,
+    report: Report,
+    base: &'a Path,
+    cancel: &'a CancelToken,
+    progress: &'a (dyn Fn(f64) + Sync),
+}
+
+impl<'a> Ports<'a> {
+    pub(crate) fn new(
+        kind: &'a NodeKind,
+        inputs: &'a [Option<Value>],
+        base: &'a Path,
+        cancel: &'a CancelToken,
+        progress: &'a (dyn Fn(f64) + Sync),
+    ) -> Self {
+        let outputs = vec![None; kind.outputs().len()];
+        Self { kind, inputs, outputs, report: Report::default(), base, cancel, progress }
+    }
+
+    fn get<T: Wire>(&self, index: usize) -> Option<&'a T> {
+        self.inputs.get(index)?.as_ref()?.get()
+    }
+
+    /// The value at an input.
+    ///
+    /// # Panics
+    /// Only where the handle belongs to another node kind: a mistake in the node's declaration. The engine reports
+    /// it as that node's failure.
+    #[expect(clippy::panic, reason = "a foreign handle is a bug in the node's declaration, reported as its failure")]
+    pub fn read<T: Wire>(&self, input: Input<T>) -> &'a T {
+        match self.get(input.index) {
+            Some(value) => value,
+            None => panic!("input handle {} does not belong to kind \"{}\"", input.index, self.kind.name()),
+        }
+    }
+
+    /// The number, integer or flag at an input.
+    pub fn value<T: Wire + Copy>(&self, input: Input<T>) -> T {
+        *self.read(input)
+    }
+
+    /// The whole number at an input, as a count. Declare it with a range that begins at 0 or above.
+    pub fn count(&self, input: Input<i64>) -> usize {
+        usize::try_from(self.value(input)).unwrap_or(0)
+    }
+
+    /// The value at an optional input, where it is connected.
+    pub fn read_optional<T: Wire>(&self, input: OptionalInput<T>) -> Option<&'a T> {
+        self.get(input.index)
+    }
+
+    /// The option chosen.
+    ///
+    /// # Panics
+    /// As [`Ports::read`].
+    #[expect(clippy::panic, reason = "options are checked before the node runs; a foreign handle is a declaration bug")]
+    pub fn choice<E: Choices>(&self, input: ChoiceInput<E>) -> E {
+        let chosen = self.get::<Choice>(input.index);
+        match chosen.and_then(|c| E::OPTIONS.iter().find(|(_, name, _)| *name == c.0)) {
+            Some((option, _, _)) => *option,
+            None => panic!("choice handle {} does not belong to kind \"{}\"", input.index, self.kind.name()),
+        }
+    }
+
+    /// The file at an input: relative paths start at the folder of the graph's file.
+    ///
+    /// # Errors
+    /// No file is named.
+    pub fn path(&self, input: Input<FilePath>) -> Result<PathBuf, NodeError> {
+        let FilePath(path) = self.read(input);
+        if path.is_empty() {
+            return Err("no file is named: give a path, relative to the folder of the graph").at(input);
+        }
+        Ok(self.base.join(path))
+    }
+
+    /// Sets an output.
+    pub fn write<T: Wire>(&mut self, output: Output<T>, value: T) {
+        self.write_value(output, Value::new(value));
+    }
+
+    /// Hands a value on without hashing it again.
+    pub fn write_value<T: Wire>(&mut self, output: Output<T>, value: Value) {
+        if let Some(slot) = self.outputs.get_mut(output.index) {
+            *slot = Some(value);
+        }
+    }
+
+    /// Says what the node decided, in plain words.
+    pub fn note(&mut self, note: impl Display) {
+        self.report.notes.push(note.to_string());
+    }
+
+    /// Says what will probably disappoint the artist, and what to do about it.
+    pub fn warn(&mut self, warning: impl Display) {
+        self.report.warnings.push(warning.to_string());
+    }
+
+    /// Reports a measured number, such as a largest gap in `m`.
+    pub fn figure(&mut self, name: &str, value: f64, unit: &'static str) {
+        self.report.figures.push(Figure { name: name.to_owned(), value, unit });
+    }
+
+    /// Tells how much is done, 0 to 1, and asks whether to go on.
+    ///
+    /// # Errors
+    /// [`NodeError::Cancelled`]: pass it on with `?`.
+    pub fn progress(&self, fraction: f64) -> Result<(), NodeError> {
+        (self.progress)(fraction);
+        if self.cancel.is_cancelled() { Err(NodeError::Cancelled) } else { Ok(()) }
+    }
+
+    /// The same as a callback for mathematics that knows nothing of nodes: `false` says stop.
+    pub fn progress_callback(&self) -> impl Fn(f64) -> bool + use<'a> {
+        let (progress, cancel) = (self.progress, self.cancel);
+        move |fraction| {
+            progress(fraction);
+            !cancel.is_cancelled()
+        }
+    }
+
+    pub(crate) fn finish(self) -> Result<(Vec<Value>, Report), NodeError> {
+        let kind = self.kind;
+        let outputs: Option<Vec<Value>> = self.outputs.iter().cloned().collect();
+        outputs.map(|values| (values, self.report)).ok_or_else(|| {
+            let missing: Vec<_> =
+                kind.outputs().iter().zip(&self.outputs).filter(|(_, o)| o.is_none()).map(|(s, _)| &*s.name).collect();
+            NodeError::new(format!(
+                "the node kind \"{}\" did not write its output {}; this is a mistake in the kind",
+                kind.name(),
+                missing.join(", ")
+            ))
+        })
+    }
+}
