@@ -1,3 +1,4 @@
-//! The headless command of Maquette, as a library: pictures and commands.
+//! The headless command of Maquette, as a library: commands, pictures and what they share.
 
+pub mod commands;
 pub mod picture;

@@ -1,2 +1,43 @@
-//! (under construction)
-fn main() {}
+//! The headless command of Maquette. Exit codes: 0 done, 1 a node failed, 2 the graph or the arguments are wrong,
+//! 3 a result could not be written.
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use maquette::commands::{self, Ended};
+
+/// Evaluates procedural modelling graphs: sketched curves in, models out.
+///
+/// Exit codes: 0 done, 1 a node failed, 2 the graph or the arguments are wrong, 3 a result could not be written.
+#[derive(Parser)]
+#[command(version, about, long_about, max_term_width = 110)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Run(commands::run::Arguments),
+    Check(commands::check::Arguments),
+    Nodes(commands::nodes::Arguments),
+    Render(commands::render::Arguments),
+}
+
+fn main() -> ExitCode {
+    std::panic::set_hook(Box::new(|_| {
+        // A node that breaks down is reported as that node's failure, in one message.
+    }));
+    let arguments = Arguments::parse();
+    let ended = std::panic::catch_unwind(|| match &arguments.command {
+        Command::Run(arguments) => commands::run::run(arguments),
+        Command::Check(arguments) => commands::check::check(arguments),
+        Command::Nodes(arguments) => commands::nodes::nodes(arguments),
+        Command::Render(arguments) => commands::render::render(arguments),
+    });
+    let ended = ended.unwrap_or_else(|_| {
+        commands::console::error("maquette broke down; this is a mistake in the program, please report it");
+        Ended::NotWritten
+    });
+    ExitCode::from(ended as u8)
+}

@@ -1,6 +1,6 @@
 //! A graph: nodes by name, what their inputs hold, and where the editor draws them.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -292,6 +292,24 @@ impl Graph {
         self.topology.fed_by(node)
     }
 
+    /// The nodes that these depend on, themselves included, in the order of the graph.
+    pub fn upstream(&self, nodes: &[NodeId]) -> Vec<NodeId> {
+        let mut reached = BTreeSet::new();
+        let mut stack = nodes.to_vec();
+        while let Some(id) = stack.pop() {
+            if let Some(node) = self.nodes.get(&id)
+                && reached.insert(id)
+            {
+                let links = node.inputs.values().filter_map(|source| match source {
+                    Source::Link(link) => Some(link.node),
+                    _ => None,
+                });
+                stack.extend(links);
+            }
+        }
+        reached.into_iter().collect()
+    }
+
     pub(crate) fn dependents(&self, node: NodeId) -> impl Iterator<Item = NodeId> + '_ {
         self.topology.dependents(node)
     }
@@ -429,6 +447,9 @@ impl Graph {
             };
             self.put(id, input, Some(Source::literal(literal)));
         } else {
+            if let Some(reason) = literal.not_finite() {
+                return Err(GraphError::BadLiteral { node: node.name.clone(), port: input.to_owned(), reason });
+            }
             self.put(id, input, Some(Source::literal(literal)));
         }
         Ok(())
@@ -465,6 +486,35 @@ impl Graph {
     /// # Errors
     /// Unknown ports, types that don't fit, a cycle.
     pub fn check_link(
+        &self,
+        catalogue: &Catalogue,
+        from: NodeId,
+        output: &str,
+        to: NodeId,
+        input: &str,
+    ) -> Result<(), ConnectError> {
+        self.check_ports(catalogue, from, output, to, input)?;
+        self.check_acyclic(from, to)
+    }
+
+    /// Whether a link would close a cycle.
+    pub(crate) fn check_acyclic(&self, from: NodeId, to: NodeId) -> Result<(), ConnectError> {
+        match self.topology.cycle_closed_by(from, to) {
+            None => Ok(()),
+            Some(path) => {
+                let names = path.iter().chain(path.first()).filter_map(|id| self.nodes.get(id));
+                Err(ConnectError::Cycle(names.map(|n| n.name.clone()).collect()))
+            }
+        }
+    }
+
+    /// For each of these links, whether it can't be part of a cycle if all of them are added.
+    pub(crate) fn harmless(&self, links: impl Iterator<Item = (NodeId, NodeId)> + Clone) -> Vec<bool> {
+        self.topology.harmless(links)
+    }
+
+    /// Whether the ports of a link exist and their types fit.
+    pub(crate) fn check_ports(
         &self,
         catalogue: &Catalogue,
         from: NodeId,
@@ -510,10 +560,6 @@ impl Graph {
                 to: format!("{}.{input}", target.name),
                 wanted: wanted.name(),
             });
-        }
-        if let Some(path) = self.topology.cycle_closed_by(from, to) {
-            let names = path.iter().chain(path.first()).filter_map(|id| self.nodes.get(id));
-            return Err(ConnectError::Cycle(names.map(|n| n.name.clone()).collect()));
         }
         Ok(())
     }

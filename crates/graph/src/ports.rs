@@ -3,7 +3,6 @@
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
-use crate::evaluate::CancelToken;
 use crate::literal::{Choice, FilePath};
 use crate::node_kind::{ChoiceInput, Choices, Input, NodeKind, OptionalInput, Output};
 use crate::report::{Figure, Report};
@@ -82,8 +81,8 @@ pub struct Ports<'a> {
     outputs: Vec<Option<Value>>,
     report: Report,
     base: &'a Path,
-    cancel: &'a CancelToken,
-    progress: &'a (dyn Fn(f64) + Sync),
+    /// Reports progress; `false` says stop.
+    progress: &'a (dyn Fn(f64) -> bool + Sync),
 }
 
 impl<'a> Ports<'a> {
@@ -91,11 +90,10 @@ impl<'a> Ports<'a> {
         kind: &'a NodeKind,
         inputs: &'a [Option<Value>],
         base: &'a Path,
-        cancel: &'a CancelToken,
-        progress: &'a (dyn Fn(f64) + Sync),
+        progress: &'a (dyn Fn(f64) -> bool + Sync),
     ) -> Self {
         let outputs = vec![None; kind.outputs().len()];
-        Self { kind, inputs, outputs, report: Report::default(), base, cancel, progress }
+        Self { kind, inputs, outputs, report: Report::default(), base, progress }
     }
 
     fn get<T: Wire>(&self, index: usize) -> Option<&'a T> {
@@ -187,17 +185,14 @@ impl<'a> Ports<'a> {
     /// # Errors
     /// [`NodeError::Cancelled`]: pass it on with `?`.
     pub fn progress(&self, fraction: f64) -> Result<(), NodeError> {
-        (self.progress)(fraction);
-        if self.cancel.is_cancelled() { Err(NodeError::Cancelled) } else { Ok(()) }
+        if (self.progress)(fraction) { Ok(()) } else { Err(NodeError::Cancelled) }
     }
 
-    /// The same as a callback for mathematics that knows nothing of nodes: `false` says stop.
+    /// The same as a callback for mathematics that knows nothing of nodes: `false` says stop. What the node gives
+    /// after that is not remembered, so that it may stop halfway.
     pub fn progress_callback(&self) -> impl Fn(f64) -> bool + use<'a> {
-        let (progress, cancel) = (self.progress, self.cancel);
-        move |fraction| {
-            progress(fraction);
-            !cancel.is_cancelled()
-        }
+        let progress = self.progress;
+        move |fraction| progress(fraction)
     }
 
     pub(crate) fn finish(self) -> Result<(Vec<Value>, Report), NodeError> {

@@ -30,8 +30,31 @@ impl Topology {
     /// The nodes from `to` to `from`, both included, where a link `from -> to` would close a cycle.
     pub(crate) fn cycle_closed_by(&self, from: NodeId, to: NodeId) -> Option<Vec<NodeId>> {
         let (from, to) = (*self.places.get(&from)?, *self.places.get(&to)?);
+        // Most links are drawn from or to a node that is new; then there is nothing to search.
+        let is_source = self.links.edges_directed(from, Direction::Incoming).next().is_none();
+        if from != to && (is_source || self.links.edges_directed(to, Direction::Outgoing).next().is_none()) {
+            return None;
+        }
         let (_, path) = petgraph::algo::astar(&self.links, to, |n| n == from, |_| 1, |_| 0)?;
         Some(path.into_iter().map(|place| self.links[place]).collect())
+    }
+
+    /// For each of these links, whether it can't be part of a cycle if all of them are added. In time proportional to
+    /// the number of links, where asking link by link would search the graph for each.
+    pub(crate) fn harmless(&self, links: impl Iterator<Item = (NodeId, NodeId)> + Clone) -> Vec<bool> {
+        let mut together = self.links.map(|_, _| (), |_, _| ());
+        let place = |id: NodeId| self.places.get(&id).copied();
+        for (from, to) in links.clone() {
+            if let (Some(from), Some(to)) = (place(from), place(to)) {
+                together.add_edge(from, to, ());
+            }
+        }
+        // Every cycle lies within one strongly connected component.
+        let components = petgraph::algo::kosaraju_scc(&together);
+        let members = components.iter().enumerate().flat_map(|(c, nodes)| nodes.iter().map(move |node| (*node, c)));
+        let component: HashMap<NodeIndex, usize> = members.collect();
+        let component = |id: NodeId| place(id).and_then(|place| component.get(&place).copied());
+        links.map(|(from, to)| from != to && component(from) != component(to)).collect()
     }
 
     /// Adds a link; the caller has made sure that it closes no cycle.

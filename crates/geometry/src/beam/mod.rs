@@ -1,1 +1,27 @@
-//! (under construction)
+//! The beam under tension: `k_b d'''' - k_s d'' = f` (thesis 5.5) along a curve, by finite differences.
+//!
+//! `d` is a position or a displacement, component by component; `u` runs over [0, 1] along the whole curve, so that
+//! tangents are `dP/du` and not unit vectors. A closed curve of `n` nodes has `h = 1/n`, an open one `h = 1/(n - 1)`.
+//! `f` is the force of the differential equation: positive `f` pushes towards positive `d`. Every solver factors
+//! once, for its nodes, pins and stiffness, and then solves for any values in O(n). The scheme (thesis 5.8, with the
+//! right side `h^4 f`) is of second order in `h`; its linear system is solved to round-off for any permitted size.
+
+mod banded;
+mod closed;
+pub mod closed_form;
+mod error;
+mod hermite;
+mod open;
+mod quantity;
+mod stiffness;
+mod system;
+
+pub use closed::ClosedBeam;
+pub use error::BeamError;
+pub use hermite::HermiteBasis;
+pub use open::{EndCondition, OpenBeam, OpenValues, sculpting_forces};
+pub use quantity::Quantity;
+pub use stiffness::{Stiffness, StiffnessError};
+
+/// Most nodes of a beam: beyond it the difference equations lose their digits faster than refinement restores them.
+pub const MOST_NODES: usize = 8192;

@@ -1,5 +1,17 @@
 //! Curves as polylines, and what is done to them: arc length, resampling, ordering into rails.
 
+mod arc_length;
+mod closest;
+mod correspondence;
 mod polyline;
+mod resample;
+mod spline;
+mod spline_length;
 
+pub use arc_length::ArcLength;
+pub use closest::{Closest, closest};
+pub use correspondence::{AxisSource, Decision, SortError, SortOptions, Sorted, sort};
 pub use polyline::{Curve, CurveError};
+pub use resample::{Amount, MAX_POINTS, ResampleError, Resampling, resample};
+pub use spline::{CubicSpline, SplineError, chord_parameters, uniform_parameters};
+pub use spline_length::SplineLength;

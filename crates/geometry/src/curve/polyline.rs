@@ -122,6 +122,39 @@ impl Curve {
         self.pressure.as_deref()
     }
 
+    /// Number of straight segments: one for each point of a closed curve, one less for an open one.
+    pub fn segment_count(&self) -> usize {
+        self.points.len() - usize::from(!self.closed)
+    }
+
+    /// Both ends of segment `index`, counted from 0; indices wrap around.
+    pub fn segment(&self, index: usize) -> (DVec3, DVec3) {
+        let count = self.points.len();
+        (self.points[index % count], self.points[(index % count + 1) % count])
+    }
+
+    /// First point.
+    pub fn start(&self) -> DVec3 {
+        self.points[0]
+    }
+
+    /// Last point; of a closed curve the one before the first.
+    pub fn end(&self) -> DVec3 {
+        self.points[self.points.len() - 1]
+    }
+
+    /// Lowest and highest corner of the box around the points.
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        self.points.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(*p), h.max(*p)))
+    }
+
+    /// Newell's area vector of the polygon through the points, square metres: its direction is the normal about which
+    /// they run counter-clockwise, its length the area where they lie in a plane. It does not depend on the first point.
+    pub fn area_vector(&self) -> DVec3 {
+        let origin = self.points[0];
+        self.points.windows(2).map(|pair| (pair[0] - origin).cross(pair[1] - origin)).sum::<DVec3>() / 2.0
+    }
+
     /// The same curve under another name.
     #[must_use]
     pub fn renamed(mut self, name: impl Into<String>) -> Self {
@@ -151,5 +184,61 @@ impl Curve {
             self.closed,
             self.pressure.clone(),
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square() -> Vec<DVec3> {
+        vec![DVec3::ZERO, DVec3::X * 2.0, DVec3::new(2.0, 2.0, 0.0), DVec3::Y * 2.0]
+    }
+
+    #[test]
+    fn repeated_points_are_dropped_with_their_pressure() {
+        let mut points = square();
+        points.insert(1, points[0]);
+        points.push(points[0]);
+        let curve = Curve::with_pressure("s", points, true, Some(vec![0.0, 9.0, 1.0, 2.0, 3.0, 9.0])).unwrap();
+        assert_eq!(curve.points(), square());
+        assert_eq!(curve.pressure(), Some(&[0.0, 1.0, 2.0, 3.0][..]));
+    }
+
+    #[test]
+    fn malformed_curves_are_refused() {
+        let refused =
+            |points: Vec<DVec3>, closed, pressure| Curve::with_pressure("c", points, closed, pressure).unwrap_err();
+        let name = || "c".to_owned();
+        assert_eq!(
+            refused(vec![DVec3::X; 3], false, None),
+            CurveError::TooFewPoints { name: name(), found: 1, needed: 2 }
+        );
+        assert_eq!(
+            refused(vec![DVec3::X, DVec3::Y, DVec3::X], true, None),
+            CurveError::TooFewPoints { name: name(), found: 2, needed: 3 }
+        );
+        assert_eq!(refused(vec![DVec3::X, DVec3::NAN], false, None), CurveError::NotFinite { name: name(), index: 1 });
+        let pressures = Some(vec![1.0, f64::INFINITY]);
+        assert_eq!(
+            refused(vec![DVec3::X, DVec3::Y], false, pressures),
+            CurveError::NotFinite { name: name(), index: 1 }
+        );
+        assert_eq!(
+            refused(vec![DVec3::X, DVec3::Y], false, Some(vec![1.0])),
+            CurveError::PressureCount { name: name(), points: 2, pressures: 1 }
+        );
+        assert!(Curve::new("c", vec![], true).is_err());
+    }
+
+    #[test]
+    fn segments_bounds_and_area() {
+        let closed = Curve::new("s", square(), true).unwrap();
+        let open = Curve::new("s", square(), false).unwrap();
+        assert_eq!((closed.segment_count(), open.segment_count()), (4, 3));
+        assert_eq!(closed.segment(3), (closed.end(), closed.start()));
+        assert_eq!(closed.bounds(), (DVec3::ZERO, DVec3::new(2.0, 2.0, 0.0)));
+        assert_eq!(closed.area_vector(), DVec3::Z * 4.0);
+        assert_eq!(closed.reversed().area_vector(), DVec3::Z * -4.0);
     }
 }

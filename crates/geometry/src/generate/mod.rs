@@ -1,1 +1,134 @@
-//! (under construction)
+//! Detail generators: surfaces swept by a beam curve along drawn rails (thesis 6).
+//!
+//! | case | curves | source |
+//! |---|---|---|
+//! | [`two_views`] | four open rails, a pair from each of two views | thesis 6.1, Figures 6.1-6.3 |
+//! | [`between_closed`] | two or more open rails between two closed curves | thesis 6.3, Figures 6.8, 6.9 |
+//!
+//! Every generator takes `progress`, called with the fraction done; where it answers `false` the generator stops with
+//! [`GenerateError::Cancelled`].
+
+mod between_closed;
+mod case;
+mod error;
+mod feet;
+mod pace;
+mod patch;
+mod two_views;
+mod view_plane;
+
+pub use between_closed::between_closed;
+pub use case::Case;
+pub use error::GenerateError;
+pub use patch::blend_generators;
+pub use two_views::two_views;
+
+use crate::beam::{MOST_NODES, Stiffness};
+use crate::curve::Curve;
+use crate::sections::Sections;
+
+/// How a generator between two rails goes over from the one to the other (thesis 6.2, 6.3).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Weights {
+    /// `s^2 (3 - 2 s)`: neighbouring patches meet without a crease.
+    #[default]
+    Smooth,
+    /// `s`, as printed in the thesis: the surface creases along every rail.
+    Linear,
+}
+
+impl Weights {
+    /// The weight of the second rail at the share `s` (0 to 1) of the way to it.
+    pub fn at(self, s: f64) -> f64 {
+        match self {
+            Self::Smooth => s * s * (3.0 - 2.0 * s),
+            Self::Linear => s,
+        }
+    }
+}
+
+/// Where the silhouettes of two views stand in depth, of which a silhouette itself tells nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ViewPlacement {
+    /// Each pair is shifted along its own viewing direction to the middle of the other pair, section by section. Seen
+    /// in its own view it stays as drawn.
+    #[default]
+    Centred,
+    /// Each pair stays in the plane it was drawn in.
+    AsDrawn,
+}
+
+/// What the generators let the artist choose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GenerateOptions {
+    /// Stiffness of the generator curve.
+    pub stiffness: Stiffness,
+    /// Number of cross-sections.
+    pub sections: usize,
+    /// Number of points of each cross-section.
+    pub nodes: usize,
+    /// Weights between two rails.
+    pub weights: Weights,
+    /// Depth of silhouettes.
+    pub placement: ViewPlacement,
+    /// How far a rail's end may be from where it should be, its closed curve or the common apex, metres.
+    pub snap: f64,
+}
+
+impl Default for GenerateOptions {
+    /// The thesis' stiffness, 24 sections of 64 points, smooth weights, centred views, 2 cm of snap.
+    fn default() -> Self {
+        Self {
+            stiffness: Stiffness::default(),
+            sections: 24,
+            nodes: 64,
+            weights: Weights::default(),
+            placement: ViewPlacement::default(),
+            snap: 0.02,
+        }
+    }
+}
+
+impl GenerateOptions {
+    /// Most points of one generated surface.
+    pub const MOST_POINTS: usize = 1 << 24;
+
+    fn check(&self, least_sections: usize) -> Result<(), GenerateError> {
+        if self.sections < least_sections {
+            return Err(GenerateError::TooFewSections { found: self.sections, needed: least_sections });
+        }
+        let points = self.sections.saturating_mul(self.nodes);
+        if self.sections > MOST_NODES || self.nodes > MOST_NODES || points > Self::MOST_POINTS {
+            return Err(GenerateError::TooLarge { sections: self.sections, nodes: self.nodes });
+        }
+        if !(self.snap.is_finite() && self.snap >= 0.0) {
+            return Err(GenerateError::Snap { snap: self.snap });
+        }
+        Ok(())
+    }
+}
+
+/// What a generator makes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Generated {
+    /// The cross-sections, closed, with the columns of the rails.
+    pub sections: Sections,
+    /// What was decided or adjusted on the way, one sentence each, for the artist.
+    pub notes: Vec<String>,
+    /// Largest distance bridged between a rail's end and where it should be, metres; at most the snap.
+    pub largest_gap: f64,
+}
+
+/// Checks that lengths and areas of the curves stay within the range of a double.
+fn check_size<'a>(curves: impl IntoIterator<Item = &'a Curve>) -> Result<(), GenerateError> {
+    let far = |curve: &&Curve| curve.points().iter().any(|p| p.abs().max_element() > 1e100);
+    match curves.into_iter().find(far) {
+        Some(curve) => Err(GenerateError::TooFarOut { name: curve.name().to_owned() }),
+        None => Ok(()),
+    }
+}
+
+/// Reports progress.
+fn report(progress: &dyn Fn(f64) -> bool, done: usize, of: usize) -> Result<(), GenerateError> {
+    if progress(done as f64 / of.max(1) as f64) { Ok(()) } else { Err(GenerateError::Cancelled) }
+}

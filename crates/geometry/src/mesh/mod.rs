@@ -1,5 +1,17 @@
 //! Polygon meshes and what can be measured on them.
 
+pub mod check;
+pub mod distance;
+pub(crate) mod ear_clipping;
+pub mod measure;
 mod polygon;
+pub mod topology;
+pub mod transform;
+pub mod triangulate;
 
+pub use check::{MeshCheck, check};
+pub use distance::{MeshDistance, Nearest};
 pub use polygon::{Mesh, MeshError};
+pub use topology::Topology;
+pub use transform::{flipped, join, transform};
+pub use triangulate::triangles;

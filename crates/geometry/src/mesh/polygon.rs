@@ -94,6 +94,46 @@ impl Mesh {
         Ok(Self { name: String::new(), positions, corners, starts, normals: None, uvs: None })
     }
 
+    /// Makes a mesh from vertices, the vertex indices of all polygons one behind the other, and the number of corners of
+    /// each polygon: as [`Mesh::new`], without copying large lists.
+    ///
+    /// # Errors
+    /// As [`Mesh::new`], and where the numbers do not add up to that of the indices.
+    pub fn from_corners(
+        positions: Vec<DVec3>,
+        corners: Vec<u32>,
+        counts: impl IntoIterator<Item = usize>,
+    ) -> Result<Self, MeshError> {
+        if positions.len() > u32::MAX as usize || corners.len() > u32::MAX as usize {
+            return Err(MeshError::TooLarge);
+        }
+        if let Some(index) = positions.iter().position(|p| !p.is_finite()) {
+            return Err(MeshError::NotFinite { what: "positions", index });
+        }
+        let mut starts = vec![0];
+        let mut end = 0_usize;
+        for (polygon, found) in counts.into_iter().enumerate() {
+            if found < 3 {
+                return Err(MeshError::TooFewCorners { polygon, found });
+            }
+            end = end.saturating_add(found);
+            // Beyond the corners only where the sum is found wrong below.
+            starts.push(end.min(corners.len()) as u32);
+        }
+        if end != corners.len() {
+            return Err(MeshError::AttributeCount {
+                what: "corners in the polygons' counts",
+                found: end,
+                corners: corners.len(),
+            });
+        }
+        if let Some(corner) = corners.iter().position(|v| *v as usize >= positions.len()) {
+            let polygon = starts.partition_point(|start| *start as usize <= corner) - 1;
+            return Err(MeshError::IndexOutOfRange { polygon, vertex: corners[corner], vertices: positions.len() });
+        }
+        Ok(Self { name: String::new(), positions, corners, starts, normals: None, uvs: None })
+    }
+
     /// The same mesh under a name.
     #[must_use]
     pub fn named(mut self, name: impl Into<String>) -> Self {
@@ -178,5 +218,32 @@ impl Mesh {
     /// UV of each corner, where there are UVs.
     pub fn uvs(&self) -> Option<&[DVec2]> {
         self.uvs.as_deref()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flat_lists_make_the_same_mesh() {
+        let points = vec![DVec3::ZERO, DVec3::X, DVec3::ONE, DVec3::Y, DVec3::Z];
+        let polygons: [&[u32]; 2] = [&[0, 1, 2, 3], &[2, 1, 4]];
+        let flat = Mesh::from_corners(points.clone(), vec![0, 1, 2, 3, 2, 1, 4], [4, 3]).unwrap();
+        assert_eq!(flat, Mesh::new(points, polygons).unwrap());
+    }
+
+    #[test]
+    fn flat_lists_are_checked() {
+        let make = |corners: Vec<u32>, counts: &[usize]| {
+            Mesh::from_corners(vec![DVec3::ZERO; 4], corners, counts.iter().copied()).unwrap_err()
+        };
+        assert_eq!(make(vec![0, 1, 2, 0, 1], &[3, 2]), MeshError::TooFewCorners { polygon: 1, found: 2 });
+        assert!(matches!(make(vec![0, 1, 2, 0], &[3]), MeshError::AttributeCount { found: 3, corners: 4, .. }));
+        assert!(matches!(make(vec![0, 1, 2], &[3, usize::MAX]), MeshError::AttributeCount { .. }));
+        let range = MeshError::IndexOutOfRange { polygon: 1, vertex: 4, vertices: 4 };
+        assert_eq!(make(vec![0, 1, 2, 0, 4, 1], &[3, 3]), range);
+        let nan = Mesh::from_corners(vec![DVec3::NAN; 3], vec![0, 1, 2], [3]).unwrap_err();
+        assert_eq!(nan, MeshError::NotFinite { what: "positions", index: 0 });
     }
 }

@@ -1,5 +1,6 @@
 //! The evaluator: remembers results from one evaluation to the next.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -142,11 +143,23 @@ impl Evaluator {
         }
         self.slots.resize(graph.id_bound(), Slot::default());
         let mut stale: Vec<NodeId> = Vec::new();
+        let mut fingerprinted = false;
         for (id, node) in graph.nodes() {
-            let fresh = self.slots[id.index()].key.is_some();
-            if fresh && (node.changed_at > self.revision || self.fingerprint_changed(id, node, request)) {
-                stale.push(id);
+            if self.slots[id.index()].key.is_some() {
+                if node.changed_at > self.revision {
+                    stale.push(id);
+                } else {
+                    fingerprinted |= node.kind.as_ref().is_some_and(|kind| kind.has_fingerprint());
+                }
             }
+        }
+        if fingerprinted {
+            // Fingerprints read files, so only those of nodes that are needed are taken.
+            let needed = graph.upstream(&request.targets).into_iter();
+            let needed = needed.filter(|id| self.slots[id.index()].key.is_some());
+            stale.extend(needed.filter(|id| {
+                graph.node(*id).is_some_and(|node| self.fingerprint_changed(*id, node, request))
+            }));
         }
         while let Some(id) = stale.pop() {
             // A stale node's dependents are stale already: keys are given and taken from the sources downwards.
@@ -190,7 +203,10 @@ impl Evaluator {
         }
         for id in &plan.order {
             let kind = match plan.found.get(id) {
-                Some(Found::Known(..)) => EventKind::Hit,
+                Some(Found::Known(_, entry)) => match &entry.result {
+                    Ok(_) => EventKind::Hit,
+                    Err(failure) => EventKind::Failed(failure),
+                },
                 Some(Found::Failed(failure)) => EventKind::Failed(failure),
                 Some(Found::Waiting(on)) => EventKind::Waiting(on),
                 Some(Found::Scheduled(_)) | None => continue,
@@ -215,9 +231,10 @@ impl Evaluator {
         begun: Instant,
     ) -> Evaluation {
         let mut evaluation = Evaluation::default();
+        let targets: HashSet<NodeId> = request.targets.iter().copied().collect();
         for id in &plan.order {
             let (Some(node), Some(found)) = (graph.node(*id), plan.found.get(id)) else { continue };
-            let wanted = request.targets.contains(id);
+            let wanted = targets.contains(id);
             let (state, ran, duration) = match found {
                 Found::Known(key, entry) => {
                     self.slots[id.index()].key = Some(*key);

@@ -31,7 +31,7 @@ pub enum EventKind<'a> {
     Hit,
     /// It ran.
     Finished(Duration),
-    /// It failed.
+    /// It failed, now or in an earlier run that is remembered.
     Failed(&'a Failure),
     /// It could not run, because these nodes failed.
     Waiting(&'a [String]),

@@ -85,7 +85,8 @@ impl Planner<'_> {
                     continue;
                 }
                 stack.push((id, true));
-                for source in node.inputs.values() {
+                // Reversed, because the last one in is the first one out: inputs are looked at in their order.
+                for source in node.inputs.values().rev() {
                     if let Source::Link(link) = source
                         && !plan.found.contains_key(&link.node)
                     {
@@ -289,8 +290,11 @@ pub(crate) fn key(
         }
     }
     if let Some(fingerprint) = kind.fingerprint_fn() {
-        let ports = Ports::new(kind, inputs, base, cancel, &|_| {});
+        let go_on = |_| !cancel.is_cancelled();
+        let ports = Ports::new(kind, inputs, base, &go_on);
         match catch_unwind(AssertUnwindSafe(|| fingerprint(&ports))) {
+            // It may have stopped halfway.
+            _ if cancel.is_cancelled() => return Ok(None),
             Ok(Ok(hash)) => bytes.extend_from_slice(&hash.0.to_le_bytes()),
             Ok(Err(NodeError::Cancelled)) => return Ok(None),
             Ok(Err(NodeError::Failed { input, message })) => return Err(failure(kind, input, message)),

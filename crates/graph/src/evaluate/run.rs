@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
@@ -110,9 +110,9 @@ impl Runner<'_> {
         match &ended {
             Ended::Entry { entry, ran, .. } => {
                 match (&entry.result, ran) {
-                    (_, false) => self.emit(step, EventKind::Hit),
+                    (Err(failure), _) => self.emit(step, EventKind::Failed(failure)),
                     (Ok(_), true) => self.emit(step, EventKind::Finished(entry.duration)),
-                    (Err(failure), true) => self.emit(step, EventKind::Failed(failure)),
+                    (Ok(_), false) => self.emit(step, EventKind::Hit),
                 }
                 if let Ok(values) = &entry.result
                     && !step.dependents.is_empty()
@@ -158,7 +158,7 @@ impl Runner<'_> {
         let failed = |failure: Failure| Ended::Entry {
             key: None,
             entry: Arc::new(Entry { result: Err(failure), report: Arc::default(), duration: Default::default() }),
-            ran: true,
+            ran: false,
         };
         let inputs = match gather(&step.kind, &step.supplies, values) {
             Ok(inputs) => inputs,
@@ -174,8 +174,13 @@ impl Runner<'_> {
         }
         self.emit(step, EventKind::Started);
         let begun = Instant::now();
-        let result = self.call(step, &inputs);
+        let told_to_stop = AtomicBool::new(false);
+        let result = self.call(step, &inputs, &told_to_stop);
         let duration = begun.elapsed();
+        if told_to_stop.into_inner() {
+            // Even a good result may be one that stopped halfway.
+            return Ended::Cancelled;
+        }
         let (result, report) = match result {
             // A node may answer a cancellation with an error of its own; that says nothing about its inputs.
             Err(_) if self.cancel.is_cancelled() => return Ended::Cancelled,
@@ -213,13 +218,26 @@ impl Runner<'_> {
         }
     }
 
-    fn call(&self, step: &Step, inputs: &[Option<Value>]) -> Result<(Vec<Value>, crate::Report), NodeError> {
+    fn call(
+        &self,
+        step: &Step,
+        inputs: &[Option<Value>],
+        told_to_stop: &AtomicBool,
+    ) -> Result<(Vec<Value>, crate::Report), NodeError> {
         let kind = &*step.kind;
         let Some(run) = kind.evaluate_fn() else {
             return Err(NodeError::new(format!("the node kind \"{}\" does not say what it does", kind.name())));
         };
-        let progress = |fraction: f64| self.emit(step, EventKind::Progress(fraction.clamp(0.0, 1.0)));
-        let mut ports = Ports::new(kind, inputs, self.base, self.cancel, &progress);
+        let progress = |fraction: f64| {
+            // `max` first: it turns NaN into 0, where `clamp` would hand it on.
+            self.emit(step, EventKind::Progress(fraction.max(0.0).min(1.0)));
+            let stop = self.cancel.is_cancelled();
+            if stop {
+                told_to_stop.store(true, Ordering::Relaxed);
+            }
+            !stop
+        };
+        let mut ports = Ports::new(kind, inputs, self.base, &progress);
         match catch_unwind(AssertUnwindSafe(|| run(&mut ports))) {
             Ok(Ok(())) => ports.finish(),
             Ok(Err(error)) => Err(error),

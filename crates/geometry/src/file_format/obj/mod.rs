@@ -1,0 +1,14 @@
+//! Wavefront OBJ: polygons of any size, curves as lines, every digit kept.
+
+mod material;
+mod read;
+mod write;
+
+pub use material::material_library_bytes;
+pub use read::read;
+pub use write::write;
+
+const FORMAT: &str = "OBJ";
+
+#[cfg(test)]
+mod tests;

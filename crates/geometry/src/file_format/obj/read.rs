@@ -1,0 +1,252 @@
+//! OBJ into meshes.
+
+use glam::{DVec2, DVec3};
+
+use super::FORMAT;
+use crate::file_format::ReadError;
+use crate::mesh::Mesh;
+use crate::mesh::measure::vector_area;
+
+/// The polygons of an OBJ, one mesh an object (`o`; groups where the file has no objects), in the file's order.
+///
+/// Polygons keep their corners. Vertices keep their order; those no polygon uses are left out. Normals (brought to unit
+/// length; the polygon's own where one is zero) and UVs are kept where every corner of the object has one. Relative
+/// indices and continued lines are understood; materials, lines, points, vertex colours and free-form surfaces are
+/// ignored. Bytes that are not UTF-8 are no error: they can only be part of names and comments.
+///
+/// # Errors
+/// [`ReadError`] where the file is empty or has no polygon, and, with the number of the line, where a number or index
+/// is wrong.
+pub fn read(bytes: &[u8]) -> Result<Vec<Mesh>, ReadError> {
+    if bytes.is_empty() {
+        return Err(ReadError::Empty { format: FORMAT });
+    }
+    let text = String::from_utf8_lossy(bytes);
+    let has_objects = text.lines().any(|line| line.split_whitespace().next() == Some("o"));
+    let mut file = File::default();
+    let mut continued = String::new();
+    let mut first_line = 1;
+    for (index, line) in text.lines().enumerate() {
+        if continued.is_empty() {
+            first_line = index + 1;
+        }
+        let trimmed = line.trim_end();
+        if let Some(start) = trimmed.strip_suffix('\\') {
+            continued.push_str(start);
+            continued.push(' ');
+            continue;
+        }
+        if continued.is_empty() {
+            file.take(trimmed, first_line, has_objects)?;
+        } else {
+            continued.push_str(trimmed);
+            file.take(&continued, first_line, has_objects)?;
+            continued.clear();
+        }
+    }
+    if !continued.is_empty() {
+        file.take(&continued, first_line, has_objects)?;
+    }
+    let meshes = file.objects.iter().filter(|object| !object.lines.is_empty()).map(|object| file.mesh(object));
+    let meshes = meshes.collect::<Result<Vec<Mesh>, ReadError>>()?;
+    if meshes.is_empty() {
+        return Err(ReadError::Nothing {
+            format: FORMAT,
+            what: "polygon",
+            remedy: "it needs lines that begin with f; export the object as a mesh",
+        });
+    }
+    Ok(meshes)
+}
+
+/// Indices of a corner into the file's vertices, UVs and normals, from 0.
+#[derive(Clone, Copy)]
+struct Corner {
+    vertex: usize,
+    uv: Option<usize>,
+    normal: Option<usize>,
+}
+
+#[derive(Default)]
+struct Object {
+    name: String,
+    corners: Vec<Corner>,
+    /// Behind the last corner of each polygon.
+    ends: Vec<usize>,
+    /// The line of each polygon.
+    lines: Vec<usize>,
+}
+
+#[derive(Default)]
+struct File {
+    positions: Vec<DVec3>,
+    uvs: Vec<DVec2>,
+    normals: Vec<DVec3>,
+    objects: Vec<Object>,
+}
+
+fn malformed(line: usize, problem: impl Into<String>) -> ReadError {
+    ReadError::Malformed { format: FORMAT, place: format!("line {line}"), problem: problem.into() }
+}
+
+impl File {
+    fn take(&mut self, text: &str, line: usize, has_objects: bool) -> Result<(), ReadError> {
+        let mut words = text.split_whitespace();
+        match words.next() {
+            Some("v") => {
+                let position = self.numbers(words, line, 3)?;
+                self.positions.push(position.into());
+            }
+            Some("vt") => {
+                // The second coordinate may be left out.
+                let [u, v, _] = self.numbers(words, line, 1)?;
+                self.uvs.push(DVec2::new(u, v));
+            }
+            Some("vn") => {
+                let normal = self.numbers(words, line, 3)?;
+                self.normals.push(normal.into());
+            }
+            Some("f") => self.take_polygon(words, line)?,
+            Some("o") => self.begin_object(text),
+            Some("g") if !has_objects => self.begin_object(text),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn begin_object(&mut self, text: &str) {
+        let name = text.trim_start().get(1..).unwrap_or("").trim();
+        self.objects.push(Object { name: name.to_owned(), ..Object::default() });
+    }
+
+    /// The first three numbers of a line; `needed` of them must be there, the others are 0 by default.
+    fn numbers<'a>(
+        &self,
+        words: impl Iterator<Item = &'a str>,
+        line: usize,
+        needed: usize,
+    ) -> Result<[f64; 3], ReadError> {
+        let mut numbers = [0.0_f64; 3];
+        let mut found = 0;
+        for (number, word) in numbers.iter_mut().zip(words) {
+            *number = word
+                .parse()
+                .map_err(|_| malformed(line, format!("\"{}\" stands where a number is expected", shortened(word))))?;
+            found += 1;
+        }
+        if found < needed {
+            return Err(malformed(line, format!("{found} number(s) where {needed} are expected")));
+        }
+        if numbers.iter().any(|number| !number.is_finite()) {
+            let name = self.objects.last().map_or("", |object| &object.name).to_owned();
+            return Err(ReadError::NotFinite { format: FORMAT, name, what: "line", index: line });
+        }
+        Ok(numbers)
+    }
+
+    fn take_polygon<'a>(&mut self, words: impl Iterator<Item = &'a str>, line: usize) -> Result<(), ReadError> {
+        let counts = [self.positions.len(), self.uvs.len(), self.normals.len()];
+        if self.objects.is_empty() {
+            self.objects.push(Object { name: "object".to_owned(), ..Object::default() });
+        }
+        let Some(object) = self.objects.last_mut() else { return Ok(()) };
+        let before = object.corners.len();
+        for word in words {
+            object.corners.push(corner(word, counts, line)?);
+        }
+        let found = object.corners.len() - before;
+        if found < 3 {
+            return Err(malformed(line, format!("a polygon of {found} corner(s); it needs at least 3")));
+        }
+        object.ends.push(object.corners.len());
+        object.lines.push(line);
+        Ok(())
+    }
+
+    fn mesh(&self, object: &Object) -> Result<Mesh, ReadError> {
+        let starts = std::iter::once(0).chain(object.ends.iter().copied());
+        let polygons = || starts.clone().zip(object.ends.iter().copied()).map(|(start, end)| start..end);
+
+        for (polygon, &line) in polygons().zip(&object.lines) {
+            for corner in &object.corners[polygon] {
+                check_index("vertex", corner.vertex, self.positions.len(), line)?;
+                check_index("UV", corner.uv.unwrap_or(0), corner.uv.map_or(1, |_| self.uvs.len()), line)?;
+                check_index(
+                    "normal",
+                    corner.normal.unwrap_or(0),
+                    corner.normal.map_or(1, |_| self.normals.len()),
+                    line,
+                )?;
+            }
+        }
+
+        let mut used: Vec<usize> = object.corners.iter().map(|corner| corner.vertex).collect();
+        used.sort_unstable();
+        used.dedup();
+        let positions: Vec<DVec3> = used.iter().map(|&vertex| self.positions[vertex]).collect();
+        // Every vertex of a corner is in the list.
+        let local = |vertex: usize| used.binary_search(&vertex).unwrap_or(0) as u32;
+        let indices = polygons()
+            .map(|polygon| object.corners[polygon].iter().map(|corner| local(corner.vertex)).collect::<Vec<u32>>());
+        let failed = |source| ReadError::Mesh { name: object.name.clone(), source };
+        let mut mesh = Mesh::new(positions, indices).map_err(failed)?.named(&object.name);
+
+        let uvs: Option<Vec<DVec2>> = object.corners.iter().map(|corner| Some(self.uvs[corner.uv?])).collect();
+        if let Some(uvs) = uvs {
+            mesh = mesh.with_uvs(uvs).map_err(failed)?;
+        }
+        if object.corners.iter().all(|corner| corner.normal.is_some()) {
+            let mut normals = Vec::with_capacity(object.corners.len());
+            for polygon in polygons() {
+                let own = || vector_area(object.corners[polygon.clone()].iter().map(|c| self.positions[c.vertex]));
+                for corner in &object.corners[polygon.clone()] {
+                    let given = corner.normal.map_or(DVec3::ZERO, |normal| self.normals[normal]);
+                    normals.push(given.try_normalize().or_else(|| own().try_normalize()).unwrap_or(DVec3::Y));
+                }
+            }
+            mesh = mesh.with_normals(normals).map_err(failed)?;
+        }
+        Ok(mesh)
+    }
+}
+
+fn check_index(what: &str, index: usize, count: usize, line: usize) -> Result<(), ReadError> {
+    if index < count {
+        return Ok(());
+    }
+    Err(malformed(line, format!("{what} {} is used, but the file has only {count}", index.saturating_add(1))))
+}
+
+/// A corner such as `7`, `7/3`, `7//2` or `7/3/2`; negative indices count back from the last entry so far.
+fn corner(word: &str, counts: [usize; 3], line: usize) -> Result<Corner, ReadError> {
+    let wrong = |problem: &str| malformed(line, format!("\"{}\" {problem}", shortened(word)));
+    let mut indices = [None; 3];
+    for (part, text) in word.split('/').enumerate() {
+        let Some(index) = indices.get_mut(part) else {
+            return Err(wrong("is no corner: expected vertex, vertex/uv, vertex//normal or vertex/uv/normal"));
+        };
+        if text.is_empty() && part > 0 {
+            continue;
+        }
+        let number: i64 = text.parse().map_err(|_| wrong("is no corner: expected whole numbers such as 7/3/2"))?;
+        *index = match number {
+            0 => return Err(wrong("has index 0: OBJ counts from 1")),
+            1.. => Some(usize::try_from(number - 1).unwrap_or(usize::MAX)),
+            _ => {
+                let back = usize::try_from(number.unsigned_abs()).unwrap_or(usize::MAX);
+                Some(counts[part].checked_sub(back).ok_or_else(|| wrong("counts back beyond the first entry"))?)
+            }
+        };
+    }
+    let [Some(vertex), uv, normal] = indices else { return Err(wrong("names no vertex")) };
+    Ok(Corner { vertex, uv, normal })
+}
+
+/// The beginning of a word, so that a message about a damaged file stays readable.
+fn shortened(word: &str) -> String {
+    let mut text: String = word.chars().take(24).collect();
+    if text.len() < word.len() {
+        text.push_str("..");
+    }
+    text
+}

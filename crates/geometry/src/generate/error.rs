@@ -1,0 +1,153 @@
+//! Why rails make no surface.
+
+use crate::beam::BeamError;
+use crate::sections::SectionsError;
+
+/// Why rails make no surface.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum GenerateError {
+    /// Fewer sections than the case needs.
+    #[error("{found} section(s) asked for, and this case needs at least {needed}")]
+    TooFewSections {
+        /// Sections asked for.
+        found: usize,
+        /// Sections needed.
+        needed: usize,
+    },
+    /// More points than are supported.
+    #[error(
+        "{sections} sections of {nodes} points asked for: at most {} of each and {} points together are supported",
+        crate::beam::MOST_NODES,
+        super::GenerateOptions::MOST_POINTS
+    )]
+    TooLarge {
+        /// Sections asked for.
+        sections: usize,
+        /// Points of each section asked for.
+        nodes: usize,
+    },
+    /// A snap distance that is not a distance.
+    #[error("the snap distance is {snap}: it must be a finite number of metres, 0 or above")]
+    Snap {
+        /// What was given.
+        snap: f64,
+    },
+    /// A curve of a size at which lengths overflow.
+    #[error("curve \"{name}\" reaches farther than 1e100 m from the origin: scale it down, the unit is the metre")]
+    TooFarOut {
+        /// Name of the curve.
+        name: String,
+    },
+    /// A closed curve among the rails.
+    #[error("rail {rail} (\"{name}\") is closed: rails are open curves, so cut it or draw it open")]
+    RailIsClosed {
+        /// Index of the rail, counted from 0.
+        rail: usize,
+        /// Its name.
+        name: String,
+    },
+    /// An open curve where a closed one is needed.
+    #[error("the {which} curve (\"{name}\") is open: close it, so that the rails can stand around it")]
+    CurveIsOpen {
+        /// `start` or `end`.
+        which: &'static str,
+        /// Its name.
+        name: String,
+    },
+    /// Fewer rails than go around.
+    #[error("{found} rail(s) given between the closed curves, and at least 2 are needed: draw another one")]
+    TooFewRails {
+        /// Rails found.
+        found: usize,
+    },
+    /// A rail that ends away from its closed curve.
+    #[error(
+        "rail {rail} (\"{name}\") {ends} {distance:.4} m away from the {which} curve (\"{curve}\"), farther than the \
+         snap of {snap} m: draw it up to the curve, or raise the snap"
+    )]
+    Gap {
+        /// Index of the rail, counted from 0.
+        rail: usize,
+        /// Its name.
+        name: String,
+        /// `starts` or `ends`.
+        ends: &'static str,
+        /// Distance, metres.
+        distance: f64,
+        /// `start` or `end`.
+        which: &'static str,
+        /// Name of the closed curve.
+        curve: String,
+        /// The snap, metres.
+        snap: f64,
+    },
+    /// A rail that runs from the end curve to the start curve.
+    #[error(
+        "rail {rail} (\"{name}\") runs from the end curve to the start curve: reverse it, or put the curves through \
+         sort first"
+    )]
+    RailIsReversed {
+        /// Index of the rail, counted from 0.
+        rail: usize,
+        /// Its name.
+        name: String,
+    },
+    /// Two rails that meet a closed curve at one point.
+    #[error("rails {first} and {second} meet the {which} curve (\"{curve}\") at one point: move them apart there")]
+    SameFoot {
+        /// Index of the one rail, counted from 0.
+        first: usize,
+        /// Index of the other rail, counted from 0.
+        second: usize,
+        /// `start` or `end`.
+        which: &'static str,
+        /// Name of the closed curve.
+        curve: String,
+    },
+    /// Rails whose feet are not in order around a closed curve.
+    #[error(
+        "rails {first} and {second} cross: around the {which} curve (\"{curve}\") their order is not that of the \
+         list; put the curves through sort, or redraw one of them"
+    )]
+    Crossing {
+        /// Index of the one rail, counted from 0.
+        first: usize,
+        /// Index of the other rail, counted from 0.
+        second: usize,
+        /// `start` or `end`.
+        which: &'static str,
+        /// Name of the closed curve.
+        curve: String,
+    },
+    /// A closed curve that runs against the order of the rails.
+    #[error(
+        "the {which} curve (\"{curve}\") runs against the order of the rails: reverse it, or put the curves through \
+         sort first"
+    )]
+    CurveIsReversed {
+        /// `start` or `end`.
+        which: &'static str,
+        /// Name of the closed curve.
+        curve: String,
+    },
+    /// Numbers of curves no case exists for.
+    #[error(
+        "no generator for {open} open and {closed} closed curve(s): give 4 open ones (the left and right outline of \
+         two views, each cut where the two meet), or 2 and more open ones that run between 2 closed ones"
+    )]
+    Unsupported {
+        /// Open curves found.
+        open: usize,
+        /// Closed curves found.
+        closed: usize,
+    },
+    /// The caller asked to stop.
+    #[error("generating was cancelled")]
+    Cancelled,
+    /// The generator curve cannot be computed.
+    #[error("the generator curve cannot be computed: {0}")]
+    Beam(#[from] BeamError),
+    /// The result is no stack of sections.
+    #[error("the rails do not give sections: {0}")]
+    Sections(#[from] SectionsError),
+}

@@ -1,0 +1,92 @@
+//! One generator between two rails.
+
+use glam::DVec3;
+
+use crate::beam::HermiteBasis;
+
+/// The generator with the weight `s` of the rail `c6` against the rail `c5`, from `a` to `b`, one point a node of the
+/// basis (thesis 6.1-6.3 and appendix D).
+///
+/// The beam with the blended sculpting forces and end tangents of both rails and the ends `a` and `b` is exactly, also
+/// in differences, `(1-s) c5 + s c6 + (a - lerp_0) H00 + (b - lerp_1) H01` with `lerp` the ends of the blended rails: no
+/// force and no tangent has to be computed. Rails and basis are read up to the shortest of them.
+pub fn blend_generators(
+    c5: &[DVec3],
+    c6: &[DVec3],
+    s: f64,
+    (a, b): (DVec3, DVec3),
+    basis: &HermiteBasis,
+) -> Vec<DVec3> {
+    let mut generator: Vec<DVec3> = c5.iter().zip(c6).map(|(p, q)| *p * (1.0 - s) + *q * s).collect();
+    let (Some(first), Some(last)) = (generator.first().copied(), generator.last().copied()) else {
+        return generator;
+    };
+    let (start, end) = (a - first, b - last);
+    for ((point, h00), h01) in generator.iter_mut().zip(&basis.h00).zip(&basis.h01) {
+        *point += start * *h00 + end * *h01;
+    }
+    let count = generator.len();
+    generator[0] = a;
+    generator[count - 1] = b;
+    generator
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::beam::{EndCondition, OpenBeam, OpenValues, Stiffness, sculpting_forces};
+
+    fn points<const N: usize>(flat: [(f64, f64); N]) -> [DVec3; N] {
+        flat.map(|(x, y)| DVec3::new(x, y, 0.0))
+    }
+
+    const C5: [(f64, f64); 6] = [(2.0, 0.0), (1.8, 0.5), (1.4, 0.9), (0.9, 1.1), (0.4, 1.1), (0.0, 1.0)];
+    const C6: [(f64, f64); 6] = [(-1.0, 0.0), (-1.0, 0.4), (-0.8, 0.7), (-0.6, 0.9), (-0.3, 1.0), (0.0, 1.0)];
+
+    #[test]
+    fn generator_reference() {
+        let wanted = points([
+            (1.6, 0.2),
+            (1.409814532772, 0.6520368758695),
+            (1.07474573254, 0.9784261328797),
+            (0.6502542674605, 1.12157386712),
+            (0.2651854672284, 1.097963124131),
+            (0.0, 1.0),
+        ]);
+        let basis = HermiteBasis::new(6, Stiffness::default()).unwrap();
+        let ends = (DVec3::new(1.6, 0.2, 0.0), DVec3::new(0.0, 1.0, 0.0));
+        let found = blend_generators(&points(C5), &points(C6), 0.25, ends, &basis);
+        assert!(found.iter().zip(wanted).all(|(f, w)| f.distance(w) < 1e-12), "{found:?}");
+    }
+
+    #[test]
+    fn equals_the_beam_with_blended_forces() {
+        let (c5, c6, s, stiffness) = (points(C5), points(C6), 0.6, Stiffness::default());
+        let t = points([(-0.5, 3.0), (-1.5, -0.8), (0.2, 2.2), (1.4, 0.3)]);
+        let (a, b) = (DVec3::new(1.0, 0.3, 0.2), DVec3::new(0.1, 0.9, -0.3));
+        let f5 = sculpting_forces(&c5, t[0], t[1], stiffness).unwrap();
+        let f6 = sculpting_forces(&c6, t[2], t[3], stiffness).unwrap();
+        let forces: Vec<DVec3> = f5.iter().zip(&f6).map(|(f, g)| *f * (1.0 - s) + *g * s).collect();
+        let beam = OpenBeam::new(6, &[], EndCondition::Clamped, EndCondition::Clamped, stiffness).unwrap();
+        let values = OpenValues {
+            left: a,
+            right: b,
+            left_tangent: t[0] * (1.0 - s) + t[2] * s,
+            right_tangent: t[1] * (1.0 - s) + t[3] * s,
+            pins: &[],
+            forces: &forces,
+        };
+        let solved = beam.solve(&values).unwrap();
+        let blended = blend_generators(&c5, &c6, s, (a, b), &HermiteBasis::new(6, stiffness).unwrap());
+        assert!(solved.iter().zip(&blended).all(|(f, w)| f.distance(*w) < 1e-12), "{solved:?} {blended:?}");
+    }
+
+    #[test]
+    fn reproduces_the_rails_and_survives_empty_ones() {
+        let (c5, c6) = (points(C5), points(C6));
+        let basis = HermiteBasis::new(6, Stiffness::default()).unwrap();
+        assert_eq!(blend_generators(&c5, &c6, 0.0, (c5[0], c5[5]), &basis), c5);
+        assert_eq!(blend_generators(&c5, &c6, 1.0, (c6[0], c6[5]), &basis), c6);
+        assert!(blend_generators(&[], &c6, 1.0, (c6[0], c6[5]), &basis).is_empty());
+    }
+}

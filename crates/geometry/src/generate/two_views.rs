@@ -1,0 +1,372 @@
+//! Silhouettes of two views.
+
+use glam::DVec3;
+
+use super::view_plane::view_normal;
+use super::{GenerateError, GenerateOptions, Generated, ViewPlacement, check_size, report};
+use crate::beam::ClosedBeam;
+use crate::curve::{ArcLength, Curve};
+use crate::sections::Sections;
+
+/// A limb or a head from the outlines of two views (thesis 6.1, Figures 6.1-6.3).
+///
+/// `rails[0]` and `rails[2]` are the pair of one view (+x and -x of the front, say), `rails[1]` and `rails[3]` that of the
+/// other; in this order they stand counter-clockwise about the direction in which all of them run. Each section passes
+/// through the points of the four rails at one share of their arc lengths, and is the closed beam curve pinned there at
+/// a quarter of its nodes each. `options.nodes` is rounded up to a multiple of 4, 8 at least.
+///
+/// Where all rails start or end within the snap of each other they meet in one apex, the mean of these ends: the section
+/// there is a pole, exactly, and sections stand closer together towards it, half as far apart as in the mean.
+///
+/// [`ViewPlacement::Centred`] shifts each pair along its own viewing direction so that the middles of both pairs agree,
+/// seen along both directions; each silhouette stays as drawn in its own view. A pair that is not flat to within 1 % of
+/// its size, and two views less than 25 degrees apart, stay as drawn, with a note.
+///
+/// # Errors
+/// [`GenerateError`] for fewer than 2 sections, a closed rail, and where `progress` asked to stop.
+pub fn two_views(
+    rails: &[Curve; 4],
+    options: &GenerateOptions,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<Generated, GenerateError> {
+    options.check(2)?;
+    check_size(rails)?;
+    if let Some((rail, curve)) = rails.iter().enumerate().find(|(_, curve)| curve.is_closed()) {
+        return Err(GenerateError::RailIsClosed { rail, name: curve.name().to_owned() });
+    }
+    let nodes = options.nodes.max(5).next_multiple_of(4);
+    let quarter = nodes / 4;
+    let columns = [0, quarter, 2 * quarter, 3 * quarter];
+    let beam = ClosedBeam::new(nodes, &columns, options.stiffness)?;
+
+    let base = Apex::find(rails.each_ref().map(Curve::start), options.snap);
+    let tip = Apex::find(rails.each_ref().map(Curve::end), options.snap);
+    let mut notes = Vec::new();
+    let normals = match options.placement {
+        ViewPlacement::Centred => view_normals(rails, &mut notes),
+        ViewPlacement::AsDrawn => [None, None],
+    };
+    let arcs = rails.each_ref().map(|rail| ArcLength::of(rail));
+    let mut rows = Vec::with_capacity(options.sections);
+    for (done, t) in stations(options.sections, base.is_some(), tip.is_some()).into_iter().enumerate() {
+        report(progress, done, options.sections)?;
+        let mut pins = arcs.each_ref().map(|arc| arc.point_at_fraction(t));
+        for (apex, nearness) in [(&base, 1.0 - t), (&tip, t)] {
+            if let Some(apex) = apex {
+                // Full at the apex and fading quadratically, so that a small gap is no kink.
+                let pull = nearness * nearness;
+                for (pin, gap) in pins.iter_mut().zip(apex.gaps) {
+                    *pin += gap * pull;
+                }
+            }
+        }
+        let apex = [(&base, 0.0), (&tip, 1.0)].into_iter().find_map(|(a, at)| a.as_ref().filter(|_| t == at));
+        let pins = match apex {
+            Some(apex) => [apex.point; 4],
+            None => centred(pins, normals),
+        };
+        rows.push(beam.solve(&pins)?);
+    }
+    report(progress, 1, 1)?;
+    let largest_gap = [base, tip].iter().flatten().flat_map(|apex| apex.gaps).map(DVec3::length).fold(0.0, f64::max);
+    Ok(Generated { sections: Sections::new(rows, true, columns.to_vec())?, notes, largest_gap })
+}
+
+/// A point in which all four rails meet.
+struct Apex {
+    point: DVec3,
+    /// From each rail's end to the point.
+    gaps: [DVec3; 4],
+}
+
+impl Apex {
+    fn find(ends: [DVec3; 4], snap: f64) -> Option<Self> {
+        let apart = ends.iter().flat_map(|p| ends.iter().map(|q| p.distance(*q))).fold(0.0, f64::max);
+        if !(apart <= snap) {
+            return None;
+        }
+        let point = if apart == 0.0 { ends[0] } else { ends.iter().copied().sum::<DVec3>() / 4.0 };
+        Some(Self { point, gaps: ends.map(|end| point - end) })
+    }
+}
+
+/// Shares of the arc length at which sections stand, from 0 to 1: evenly, but twice as dense at an apex as evenly.
+fn stations(count: usize, base: bool, tip: bool) -> Vec<f64> {
+    use std::f64::consts::PI;
+    let last = count - 1;
+    (0..count)
+        .map(|k| {
+            let x = k as f64 / last as f64;
+            match (base, tip) {
+                _ if k == 0 || k == last => x,
+                (false, false) => x,
+                (false, true) => x + 0.5 * (PI * x).sin() / PI,
+                (true, false) => x - 0.5 * (PI * x).sin() / PI,
+                (true, true) => x - 0.5 * (2.0 * PI * x).sin() / (2.0 * PI),
+            }
+        })
+        .collect()
+}
+
+/// Normals of the views whose silhouettes may be shifted.
+fn view_normals(rails: &[Curve; 4], notes: &mut Vec<String>) -> [Option<DVec3>; 2] {
+    let mut normals = [None, None];
+    for (pair, normal) in normals.iter_mut().enumerate() {
+        let (one, other) = (&rails[pair], &rails[pair + 2]);
+        *normal = view_normal(one, other);
+        if normal.is_none() {
+            notes.push(format!(
+                "Rails {pair} (\"{}\") and {} (\"{}\") do not lie in one plane: they stay where they were drawn.",
+                one.name(),
+                pair + 2,
+                other.name()
+            ));
+        }
+    }
+    if let [Some(a), Some(b)] = normals
+        && a.dot(b).abs() > 0.9
+    {
+        notes.push("Both pairs of rails were drawn in nearly the same view: they stay where they were drawn.".into());
+        return [None, None];
+    }
+    normals
+}
+
+/// The four points with each pair shifted along its normal, so that the middles of both pairs agree in these directions.
+fn centred(mut pins: [DVec3; 4], normals: [Option<DVec3>; 2]) -> [DVec3; 4] {
+    let between = ((pins[1] + pins[3]) - (pins[0] + pins[2])) * 0.5;
+    let shifts = match normals {
+        [Some(a), Some(b)] => {
+            let cosine = a.dot(b);
+            let (along_a, along_b) = (a.dot(between), b.dot(between));
+            let share = 1.0 / (1.0 - cosine * cosine);
+            [a * ((along_a - cosine * along_b) * share), b * ((cosine * along_a - along_b) * share)]
+        }
+        [Some(a), None] => [a * a.dot(between), DVec3::ZERO],
+        [None, Some(b)] => [DVec3::ZERO, b * -b.dot(between)],
+        [None, None] => [DVec3::ZERO; 2],
+    };
+    for (k, pin) in pins.iter_mut().enumerate() {
+        *pin += shifts[k % 2];
+    }
+    pins
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    fn rail(name: &str, count: usize, at: impl Fn(f64) -> DVec3) -> Curve {
+        Curve::new(name, (0..=count).map(|i| at(i as f64 / count as f64)).collect(), false).unwrap()
+    }
+
+    fn run(rails: &[Curve; 4], options: &GenerateOptions) -> Generated {
+        two_views(rails, options, &|_| true).unwrap()
+    }
+
+    /// A slanting leg of elliptical sections, its front outline drawn at z = 0.025 and its side outline at x = 0.1445.
+    fn leg() -> [Curve; 4] {
+        let (cx, cz) = (|t: f64| 0.25 - 0.2 * t, |t: f64| -0.06 + 0.1 * t);
+        let (a, b) = (|t: f64| 0.04 + 0.05 * t, |t: f64| 0.05 + 0.03 * t);
+        [
+            rail("left", 20, |t| DVec3::new(cx(t) + a(t), t, 0.025)),
+            rail("back", 20, |t| DVec3::new(0.1445, t, cz(t) - b(t))),
+            rail("right", 20, |t| DVec3::new(cx(t) - a(t), t, 0.025)),
+            rail("front", 20, |t| DVec3::new(0.1445, t, cz(t) + b(t))),
+        ]
+    }
+
+    #[test]
+    fn a_slanting_leg_stands_where_its_silhouettes_cross() {
+        let made = run(&leg(), &GenerateOptions::default());
+        assert_eq!((made.sections.len(), made.sections.nodes()), (24, 64));
+        assert_eq!((made.sections.rails(), made.notes.len(), made.largest_gap), (&[0, 16, 32, 48][..], 0, 0.0));
+        for (k, section) in made.sections.iter().enumerate() {
+            let t = k as f64 / 23.0;
+            let centre = DVec3::new(0.25 - 0.2 * t, t, -0.06 + 0.1 * t);
+            let (a, b) = (0.04 + 0.05 * t, 0.05 + 0.03 * t);
+            let pins = [DVec3::X * a, DVec3::Z * -b, DVec3::X * -a, DVec3::Z * b].map(|p| centre + p);
+            for (pin, column) in pins.iter().zip(made.sections.rails()) {
+                assert!(section[*column].distance(*pin) < 1e-12, "section {k}");
+            }
+            for point in section {
+                let p = *point - centre;
+                let radius = (p.x / a).hypot(p.z / b);
+                assert!((0.965..1.0 + 1e-12).contains(&radius) && p.y.abs() < 1e-12, "section {k}: {radius}");
+            }
+        }
+    }
+
+    #[test]
+    fn silhouettes_stay_exact_in_their_own_view() {
+        let bulge = |t: f64| 0.02 * (7.0 * t).sin();
+        let mut rails = leg();
+        rails[0] = rail("left", 50, |t| DVec3::new(0.29 - 0.15 * t + bulge(t), t, 0.025));
+        rails[3] = rail("front", 50, |t| DVec3::new(0.1445, 1.1 * t, 0.13 * t + bulge(1.0 - t)));
+        let (made, drawn) = (run(&rails, &GenerateOptions::default()), rails.each_ref().map(|r| ArcLength::of(r)));
+        let as_drawn =
+            run(&rails, &GenerateOptions { placement: ViewPlacement::AsDrawn, ..GenerateOptions::default() });
+        for (k, (section, flat)) in made.sections.iter().zip(as_drawn.sections.iter()).enumerate() {
+            for (pair, column) in made.sections.rails().iter().enumerate() {
+                let wanted = drawn[pair].point_at_fraction(k as f64 / 23.0);
+                let off = section[*column] - wanted;
+                let seen = if pair % 2 == 0 { off.truncate().length() } else { off.with_x(0.0).length() };
+                assert!(seen < 1e-12, "section {k}, pair {pair}: {off}");
+                assert_eq!(flat[*column], wanted);
+            }
+        }
+    }
+
+    #[test]
+    fn views_need_not_be_square_to_each_other() {
+        let turn = glam::DQuat::from_rotation_y(0.6);
+        let mut rails = leg();
+        for k in [1, 3] {
+            rails[k] = rails[k].map(|p| turn * p).unwrap();
+        }
+        let made = run(&rails, &GenerateOptions::default());
+        assert!(made.notes.is_empty());
+        for section in made.sections.iter() {
+            let pins: Vec<DVec3> = made.sections.rails().iter().map(|column| section[*column]).collect();
+            let apart = (pins[0] + pins[2] - pins[1] - pins[3]) * 0.5;
+            assert!(apart.z.abs() < 1e-12 && apart.dot(turn * DVec3::X).abs() < 1e-12, "{apart}");
+        }
+    }
+
+    /// A head-like dome on a cylinder; the outlines meet on top, the front one drawn behind the side one's middle.
+    fn dome() -> [Curve; 4] {
+        let profile = |t: f64| {
+            let a = (2.0 * t - 1.0).max(0.0) * FRAC_PI_2;
+            (0.08 * a.cos(), if t < 0.5 { 0.2 * t } else { 0.1 + 0.1 * a.sin() })
+        };
+        let tip = DVec3::new(0.0, 0.2, 0.03);
+        let outline = |name, out: DVec3| {
+            rail(
+                name,
+                200,
+                move |t| if t == 1.0 { tip } else { out * profile(t).0 + DVec3::new(0.0, profile(t).1, 0.03) },
+            )
+        };
+        [
+            outline("left", DVec3::X),
+            outline("back", DVec3::NEG_Z),
+            outline("right", DVec3::NEG_X),
+            outline("front", DVec3::Z),
+        ]
+    }
+
+    #[test]
+    fn an_apex_is_a_round_cap_that_ends_in_a_pole() {
+        let made = run(&dome(), &GenerateOptions::default());
+        let tip = DVec3::new(0.0, 0.2, 0.03);
+        assert!(made.sections.section(23).iter().all(|p| *p == tip));
+        assert!(made.sections.is_pole(23) && !made.sections.is_pole(22));
+        for pair in [0, 1] {
+            let columns = [made.sections.rails()[pair], made.sections.rails()[pair + 2]];
+            let up = made.sections.iter().map(|section| section[columns[0]]);
+            let down: Vec<DVec3> = made.sections.iter().map(|section| section[columns[1]]).collect();
+            let outline: Vec<DVec3> = up.chain(down.into_iter().rev().skip(1)).collect();
+            let turns: Vec<f64> =
+                outline.windows(3).map(|w| (w[1] - w[0]).angle_between(w[2] - w[1]).to_degrees()).collect();
+            let largest = turns.iter().copied().fold(0.0, f64::max);
+            assert!(largest < 12.0, "{turns:?}");
+            assert!(turns[22] < 8.0, "over the pole: {}", turns[22]);
+        }
+        // The profile of each cap is that of the outline, and its rings shrink evenly to the pole.
+        let sizes: Vec<f64> = made.sections.iter().map(|s| s[0].distance(s[32])).collect();
+        assert!(sizes.windows(2).skip(12).all(|w| w[1] < w[0]), "{sizes:?}");
+    }
+
+    #[test]
+    fn an_apex_may_be_at_the_start_or_loose() {
+        let reversed = dome().map(Curve::reversed);
+        let made = run(&reversed, &GenerateOptions::default());
+        assert!(made.sections.is_pole(0) && !made.sections.is_pole(23));
+
+        let mut loose = dome();
+        let gap = 0.012;
+        loose[0] = loose[0].map(|p| p + DVec3::new(0.0, gap, 0.0)).unwrap();
+        let made = run(&loose, &GenerateOptions::default());
+        assert!(made.sections.is_pole(23));
+        assert!((made.largest_gap - 0.75 * gap).abs() < 1e-12, "{}", made.largest_gap);
+        let open = run(&loose, &GenerateOptions { snap: 0.01, ..GenerateOptions::default() });
+        assert!(!open.sections.is_pole(23));
+        assert_eq!(open.largest_gap, 0.0);
+    }
+
+    #[test]
+    fn stations_rise_from_end_to_end() {
+        for (base, tip) in [(false, false), (false, true), (true, false), (true, true)] {
+            for count in [2, 3, 24] {
+                let t = stations(count, base, tip);
+                assert_eq!((t.len(), t[0], t[count - 1]), (count, 0.0, 1.0));
+                assert!(t.windows(2).all(|w| w[1] > w[0]), "{t:?}");
+            }
+            let t = stations(1001, base, tip);
+            let (first, last) = (1000.0 * (t[1] - t[0]), 1000.0 * (t[1000] - t[999]));
+            assert!(!base || (first - 0.5).abs() < 1e-3, "{first}");
+            assert!(!tip || (last - 0.5).abs() < 1e-3, "{last}");
+        }
+    }
+
+    #[test]
+    fn pairs_that_cannot_be_shifted_are_noted() {
+        let mut rails = leg();
+        rails[1] = rail("back", 20, |t| DVec3::new(0.1445 + 0.1 * (3.0 * t).sin(), t, -0.1));
+        let made = run(&rails, &GenerateOptions::default());
+        assert!(made.notes.len() == 1 && made.notes[0].contains("Rails 1 (\"back\") and 3"), "{:?}", made.notes);
+        let drawn = ArcLength::of(&rails[1]);
+        for (k, section) in made.sections.iter().enumerate() {
+            assert_eq!(section[16], drawn.point_at_fraction(k as f64 / 23.0));
+            assert!(((section[0] + section[32] - section[16] - section[48]).z).abs() < 1e-12);
+        }
+
+        let [left, _, right, _] = leg();
+        let same = [left.clone(), left.map(|p| p * 1.1).unwrap(), right.clone(), right.map(|p| p * 1.1).unwrap()];
+        let made = run(&same, &GenerateOptions::default());
+        assert!(made.notes[0].contains("nearly the same view"), "{:?}", made.notes);
+        assert_eq!(made.sections.section(0)[0], same[0].start());
+    }
+
+    #[test]
+    fn nodes_are_rounded_up_to_quarters() {
+        for (asked, made) in [(0, 8), (8, 8), (30, 32), (8190, 8192)] {
+            let options = GenerateOptions { nodes: asked, sections: 2, ..GenerateOptions::default() };
+            let sections = run(&leg(), &options).sections;
+            assert_eq!((sections.nodes(), sections.rails()), (made, &[0, made / 4, made / 2, 3 * made / 4][..]));
+        }
+    }
+
+    #[test]
+    fn errors() {
+        let rails = leg();
+        let with = |change: fn(&mut GenerateOptions)| {
+            let mut options = GenerateOptions::default();
+            change(&mut options);
+            two_views(&rails, &options, &|_| true)
+        };
+        let few = with(|o| o.sections = 1);
+        assert_eq!(few, Err(GenerateError::TooFewSections { found: 1, needed: 2 }));
+        for huge in [
+            with(|o| o.nodes = usize::MAX),
+            with(|o| o.sections = 9000),
+            with(|o| (o.sections, o.nodes) = (8192, 8192)),
+        ] {
+            assert!(matches!(huge, Err(GenerateError::TooLarge { .. })));
+        }
+        for snap in [with(|o| o.snap = -1.0), with(|o| o.snap = f64::INFINITY)] {
+            assert!(matches!(snap, Err(GenerateError::Snap { .. })));
+        }
+        let stopped = two_views(&rails, &GenerateOptions::default(), &|done| done < 0.3);
+        assert_eq!(stopped, Err(GenerateError::Cancelled));
+        let mut closed = leg();
+        closed[2] = Curve::new("ring", closed[2].points().to_vec(), true).unwrap();
+        let refused = two_views(&closed, &GenerateOptions::default(), &|_| true);
+        assert_eq!(refused, Err(GenerateError::RailIsClosed { rail: 2, name: "ring".into() }));
+        let mut huge = leg();
+        huge[1] = huge[1].map(|p| p * 1e102).unwrap();
+        let refused = two_views(&huge, &GenerateOptions::default(), &|_| true);
+        assert_eq!(refused, Err(GenerateError::TooFarOut { name: "back".into() }));
+    }
+}

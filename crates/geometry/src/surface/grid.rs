@@ -1,0 +1,236 @@
+//! The sampled surface of a skin: rows of vertices with normals, and the coordinates of the net.
+
+use glam::DVec3;
+
+use super::knots;
+use super::pole::{self, PoleShape, RoundPole};
+use super::skin::{SkinError, SkinOptions};
+use super::spline::{Ends, Hermite, Lane, SlopeSystem};
+use crate::sections::Sections;
+
+/// Vertices row after row. A row at a pole has a single vertex.
+pub(crate) struct Grid {
+    pub positions: Vec<DVec3>,
+    /// Unit normal of each vertex, or zero where the surface has none.
+    pub normals: Vec<DVec3>,
+    /// First vertex of each row, and behind the last one the number of vertices.
+    pub starts: Vec<usize>,
+    /// Vertices of a row that is not a pole.
+    pub columns: usize,
+    /// Quads of a row.
+    pub cells: usize,
+    /// Mean share of arc length in 0..=1 before each column, one more than there are cells.
+    pub across: Vec<f64>,
+    /// The same before each row.
+    pub along: Vec<f64>,
+}
+
+impl Grid {
+    /// Vertex in a row at a column; a pole has all columns in one vertex.
+    pub fn vertex(&self, row: usize, column: usize) -> u32 {
+        // The number of vertices is limited far below 2^32.
+        let place = if self.is_pole(row) { 0 } else { column };
+        (self.starts[row] + place) as u32
+    }
+
+    pub fn is_pole(&self, row: usize) -> bool {
+        self.starts[row + 1] - self.starts[row] == 1
+    }
+
+    pub fn rows(&self) -> usize {
+        self.starts.len() - 1
+    }
+}
+
+/// Rows and columns of a grid, and its number of vertices.
+pub(crate) struct Extent {
+    pub rows: usize,
+    pub columns: usize,
+    pub cells: usize,
+}
+
+impl Extent {
+    pub fn new(sections: &Sections, options: &SkinOptions) -> Self {
+        let spans = if sections.is_closed() { sections.nodes() } else { sections.nodes() - 1 };
+        let cells = spans.saturating_mul(options.columns);
+        let rows = (sections.len() - 1).saturating_mul(options.rows).saturating_add(1);
+        Self { rows, cells, columns: if sections.is_closed() { cells } else { cells.saturating_add(1) } }
+    }
+
+    pub fn vertices(&self) -> usize {
+        self.rows.saturating_mul(self.columns)
+    }
+}
+
+/// A quantity given at each section, on all columns of the grid, with its derivative across.
+struct Dense {
+    value: Vec<DVec3>,
+    derivative: Vec<DVec3>,
+}
+
+/// Samples the bicubic spline through all points.
+pub(crate) fn sample(
+    sections: &Sections,
+    poles: &[bool],
+    options: &SkinOptions,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<Grid, SkinError> {
+    let Extent { rows, columns, cells } = Extent::new(sections, options);
+    let (count, nodes, closed) = (sections.len(), sections.nodes(), sections.is_closed());
+    let points = sections.points();
+    let intervals = knots::along(sections, options.parameter);
+    let tips = round_poles(sections, poles, options, &intervals);
+
+    let mut slopes = vec![DVec3::ZERO; points.len()];
+    if let Some(tip) = &tips[0] {
+        slopes[..nodes].copy_from_slice(&tip.slopes);
+    }
+    if let Some(tip) = &tips[1] {
+        for (slope, outward) in slopes[(count - 1) * nodes..].iter_mut().zip(&tip.slopes) {
+            *slope = -*outward;
+        }
+    }
+    let ends = Ends::Open { start_given: tips[0].is_some(), end_given: tips[1].is_some() };
+    let system = SlopeSystem::new(intervals, ends);
+    for column in 0..nodes {
+        system.solve(points, &mut slopes, Lane { first: column, stride: nodes });
+    }
+
+    let ends = if closed { Ends::Periodic } else { Ends::Open { start_given: false, end_given: false } };
+    let across = SlopeSystem::new(knots::across(sections, options.parameter, poles), ends);
+    let point = spread(points, &across, nodes, options.columns);
+    let slope = spread(&slopes, &across, nodes, options.columns);
+
+    let tip_normals = [tips[0].as_ref().map(|t| -t.axis), tips[1].as_ref().map(|t| t.axis)];
+    let mut positions = Vec::with_capacity(rows * columns);
+    let mut normals = Vec::with_capacity(rows * columns);
+    let mut starts = Vec::with_capacity(rows + 1);
+    for row in 0..rows {
+        let (section, step) = (row / options.rows, row % options.rows);
+        if step == 0 && !progress(row as f64 / rows as f64) {
+            return Err(SkinError::Cancelled);
+        }
+        starts.push(positions.len());
+        if step == 0 && poles[section] {
+            positions.push(sections.section(section)[0]);
+            let tip = if section == 0 { tip_normals[0] } else { tip_normals[1] };
+            let outer = section == 0 || section + 1 == count;
+            normals.push(tip.filter(|_| outer).unwrap_or_default());
+            continue;
+        }
+        // The last row is the end of the last interval.
+        let (gap, t) =
+            if section + 1 == count { (section - 1, 1.0) } else { (section, step as f64 / options.rows as f64) };
+        let weights = Hermite::new(t, system.intervals()[gap]);
+        let (a, b) = (gap * columns..(gap + 1) * columns, (gap + 1) * columns..(gap + 2) * columns);
+        let (pa, pb, ma, mb) =
+            (&point.value[a.clone()], &point.value[b.clone()], &slope.value[a.clone()], &slope.value[b.clone()]);
+        let (da, db, na, nb) =
+            (&point.derivative[a.clone()], &point.derivative[b.clone()], &slope.derivative[a], &slope.derivative[b]);
+        if step == 0 {
+            // Not computed, so that the surface meets the sections to the bit.
+            positions.extend_from_slice(&point.value[section * columns..(section + 1) * columns]);
+        } else {
+            positions.extend((0..columns).map(|k| Hermite::sum(&weights.value, pa[k], ma[k], pb[k], mb[k])));
+        }
+        normals.extend((0..columns).map(|k| {
+            let across = Hermite::sum(&weights.value, da[k], na[k], db[k], nb[k]);
+            let along = Hermite::sum(&weights.derivative, pa[k], ma[k], pb[k], mb[k]);
+            unit_normal(across, along)
+        }));
+    }
+    starts.push(positions.len());
+    let across = shares_across(&point.value, columns, cells);
+    let mut grid = Grid { positions, normals, starts, columns, cells, across, along: Vec::new() };
+    grid.along = shares_along(&grid, options.columns);
+    Ok(grid)
+}
+
+/// The tangent planes at the first and the last section, where they are round poles.
+fn round_poles(
+    sections: &Sections,
+    poles: &[bool],
+    options: &SkinOptions,
+    intervals: &[f64],
+) -> [Option<RoundPole>; 2] {
+    let last = sections.len() - 1;
+    [(0, 1, 0), (last, last - 1, last - 1)].map(|(tip, ring, gap)| {
+        if !poles[tip] || options.pole == PoleShape::Pointed {
+            return None;
+        }
+        pole::round(sections.section(tip)[0], sections.section(ring), sections.is_closed(), intervals[gap])
+    })
+}
+
+/// Evaluates the splines across at `steps` places between neighbouring points.
+fn spread(values: &[DVec3], system: &SlopeSystem, nodes: usize, steps: usize) -> Dense {
+    let spans = system.intervals().len();
+    let rows = values.len() / nodes;
+    let mut slopes = vec![DVec3::ZERO; values.len()];
+    let capacity = rows * (spans * steps + 1);
+    let mut dense = Dense { value: Vec::with_capacity(capacity), derivative: Vec::with_capacity(capacity) };
+    let weights: Vec<Hermite> = system
+        .intervals()
+        .iter()
+        .flat_map(|h| (1..steps).map(|step| Hermite::new(step as f64 / steps as f64, *h)))
+        .collect();
+    for row in 0..rows {
+        let first = row * nodes;
+        system.solve(values, &mut slopes, Lane { first, stride: 1 });
+        for j in 0..nodes {
+            dense.value.push(values[first + j]);
+            dense.derivative.push(slopes[first + j]);
+            if j == spans {
+                continue;
+            }
+            let (a, b) = (first + j, first + if j + 1 == nodes { 0 } else { j + 1 });
+            for weights in &weights[j * (steps - 1)..(j + 1) * (steps - 1)] {
+                dense.value.push(Hermite::sum(&weights.value, values[a], slopes[a], values[b], slopes[b]));
+                dense.derivative.push(Hermite::sum(&weights.derivative, values[a], slopes[a], values[b], slopes[b]));
+            }
+        }
+    }
+    dense
+}
+
+/// Unit normal of two tangents, or zero where they are parallel.
+fn unit_normal(across: DVec3, along: DVec3) -> DVec3 {
+    let normal = across.cross(along);
+    let square = normal.length_squared();
+    if square > 1e-24 * across.length_squared() * along.length_squared() { normal / square.sqrt() } else { DVec3::ZERO }
+}
+
+fn shares_across(points: &[DVec3], columns: usize, cells: usize) -> Vec<f64> {
+    let mut lengths = vec![0.0; cells];
+    for row in points.chunks_exact(columns) {
+        for (k, length) in lengths.iter_mut().enumerate() {
+            *length += row[k].distance(row[if k + 1 == columns { 0 } else { k + 1 }]);
+        }
+    }
+    shares(&lengths)
+}
+
+/// Measured at the columns through the given points only.
+fn shares_along(grid: &Grid, step: usize) -> Vec<f64> {
+    let length = |row: usize| {
+        let point = |row: usize, column: usize| grid.positions[grid.vertex(row, column) as usize];
+        (0..grid.columns).step_by(step).map(|column| point(row, column).distance(point(row + 1, column))).sum()
+    };
+    shares(&(0..grid.rows() - 1).map(length).collect::<Vec<f64>>())
+}
+
+/// Running sums from 0 to exactly 1.
+fn shares(lengths: &[f64]) -> Vec<f64> {
+    let total: f64 = lengths.iter().sum();
+    let mut sum = 0.0;
+    let mut shares = Vec::with_capacity(lengths.len() + 1);
+    shares.push(0.0);
+    for length in lengths {
+        sum += length;
+        shares.push(f64::min(sum / total, 1.0));
+    }
+    if let Some(last) = shares.last_mut() {
+        *last = 1.0;
+    }
+    shares
+}

@@ -1,0 +1,260 @@
+//! Slopes of C2 cubic splines for many columns of points over the same knots.
+//!
+//! A skin solves the same small system for each column along the stack and each section across it, so that the
+//! factors are computed once, and the slopes are written into one array in place. That is why the splines of single
+//! curves are not used here.
+
+use glam::DVec3;
+
+/// How a spline ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ends {
+    /// The last knot is followed by the first: one interval a knot.
+    Periodic,
+    /// Two ends, each natural (second derivative 0) or with its slope given.
+    Open { start_given: bool, end_given: bool },
+}
+
+/// The factored system for the slopes at the knots of a C2 cubic spline.
+///
+/// With intervals `h` and chord slopes `d`, each inner knot demands
+/// `h_i m_(i-1) + 2 (h_(i-1) + h_i) m_i + h_(i-1) m_(i+1) = 3 (h_i d_(i-1) + h_(i-1) d_i)`; a natural end
+/// `2 m_0 + m_1 = 3 d_0`. Solved by elimination without pivots (the matrix is diagonally dominant), the periodic one
+/// with a Sherman-Morrison correction.
+#[derive(Clone, Debug)]
+pub(crate) struct SlopeSystem {
+    intervals: Vec<f64>,
+    ends: Ends,
+    lower: Vec<f64>,
+    inverse_pivot: Vec<f64>,
+    upper: Vec<f64>,
+    /// Correction a unit of the periodic residual, and the weight of the last slope in that residual.
+    wrap: Option<(Vec<f64>, f64)>,
+}
+
+/// Where the values of one column stand in an array.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lane {
+    pub first: usize,
+    pub stride: usize,
+}
+
+impl Lane {
+    fn at(self, knot: usize) -> usize {
+        self.first + knot * self.stride
+    }
+}
+
+impl SlopeSystem {
+    /// Factors the system. Intervals must be positive and finite; at least one, or three where periodic.
+    pub fn new(intervals: Vec<f64>, ends: Ends) -> Self {
+        let periodic = ends == Ends::Periodic;
+        let count = if periodic { intervals.len() } else { intervals.len() + 1 };
+        let h = |i: usize| intervals[i % intervals.len()];
+        let mut lower = vec![0.0; count];
+        let mut diagonal = vec![1.0; count];
+        let mut upper = vec![0.0; count];
+        for i in 0..count {
+            let inner = periodic || (i > 0 && i + 1 < count);
+            if inner {
+                let before = h(i + intervals.len() - 1);
+                lower[i] = h(i);
+                diagonal[i] = 2.0 * (before + h(i));
+                upper[i] = before;
+            }
+        }
+        if let Ends::Open { start_given, end_given } = ends {
+            if !start_given {
+                (diagonal[0], upper[0]) = (2.0, 1.0);
+            }
+            if !end_given {
+                (diagonal[count - 1], lower[count - 1]) = (2.0, 1.0);
+            }
+        }
+        let corners = periodic.then(|| {
+            // The two entries in the corners of the matrix are moved into an update of rank one.
+            let gamma = -diagonal[0];
+            let last_weight = lower[0] / gamma;
+            diagonal[0] -= gamma;
+            diagonal[count - 1] -= upper[count - 1] * last_weight;
+            (gamma, std::mem::take(&mut upper[count - 1]), last_weight)
+        });
+        let mut inverse_pivot = vec![0.0; count];
+        for i in 0..count {
+            let fill = if i == 0 { 0.0 } else { lower[i] * upper[i - 1] };
+            inverse_pivot[i] = 1.0 / (diagonal[i] - fill);
+            upper[i] *= inverse_pivot[i];
+        }
+        let wrap = corners.map(|(gamma, last, last_weight)| {
+            let mut z = vec![0.0; count];
+            z[0] = gamma;
+            z[count - 1] = last;
+            z[0] *= inverse_pivot[0];
+            for i in 1..count {
+                z[i] = (z[i] - lower[i] * z[i - 1]) * inverse_pivot[i];
+            }
+            for i in (0..count - 1).rev() {
+                z[i] -= upper[i] * z[i + 1];
+            }
+            let scale = 1.0 / (1.0 + z[0] + last_weight * z[count - 1]);
+            for value in &mut z {
+                *value *= scale;
+            }
+            (z, last_weight)
+        });
+        Self { intervals, ends, lower, inverse_pivot, upper, wrap }
+    }
+
+    /// Parameter length of each interval.
+    pub fn intervals(&self) -> &[f64] {
+        &self.intervals
+    }
+
+    /// Number of knots.
+    pub fn knots(&self) -> usize {
+        self.inverse_pivot.len()
+    }
+
+    /// Writes the slope at each knot of a column of values into the same places of `slopes`. Slopes that are given
+    /// must stand in `slopes` before.
+    pub fn solve(&self, values: &[DVec3], slopes: &mut [DVec3], lane: Lane) {
+        let count = self.knots();
+        let spans = self.intervals.len();
+        let chord = |i: usize| {
+            let next = if i + 1 == count { 0 } else { i + 1 };
+            (values[lane.at(next)] - values[lane.at(i)]) / self.intervals[i]
+        };
+        let periodic = self.ends == Ends::Periodic;
+        let mut before = chord(if periodic { count - 1 } else { 0 });
+        for i in 0..count {
+            let at = lane.at(i);
+            let right = if let Ends::Open { start_given, end_given } = self.ends
+                && (i == 0 || i + 1 == count)
+            {
+                let given = if i == 0 { start_given } else { end_given };
+                if given { slopes[at] } else { 3.0 * before }
+            } else {
+                let after = chord(i);
+                let (h_before, h_after) = (self.intervals[if i == 0 { spans - 1 } else { i - 1 }], self.intervals[i]);
+                let right = 3.0 * (h_after * before + h_before * after);
+                before = after;
+                right
+            };
+            let carried = if i == 0 { DVec3::ZERO } else { self.lower[i] * slopes[lane.at(i - 1)] };
+            slopes[at] = (right - carried) * self.inverse_pivot[i];
+        }
+        for i in (0..count - 1).rev() {
+            let next = slopes[lane.at(i + 1)];
+            slopes[lane.at(i)] -= self.upper[i] * next;
+        }
+        if let Some((z, last_weight)) = &self.wrap {
+            let residual = slopes[lane.at(0)] + *last_weight * slopes[lane.at(count - 1)];
+            for (i, z) in z.iter().enumerate() {
+                slopes[lane.at(i)] -= *z * residual;
+            }
+        }
+    }
+}
+
+/// Weights of the cubic Hermite form at a place in an interval: of value and slope at its start, then at its end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Hermite {
+    pub value: [f64; 4],
+    /// The same for the derivative by the parameter.
+    pub derivative: [f64; 4],
+}
+
+impl Hermite {
+    /// Weights at the fraction `t` in 0..=1 of an interval of length `h`.
+    pub fn new(t: f64, h: f64) -> Self {
+        let s = 1.0 - t;
+        Self {
+            value: [(1.0 + 2.0 * t) * s * s, h * t * s * s, t * t * (3.0 - 2.0 * t), -h * t * t * s],
+            derivative: [-6.0 * t * s / h, s * (1.0 - 3.0 * t), 6.0 * t * s / h, t * (3.0 * t - 2.0)],
+        }
+    }
+
+    /// A weighted sum of value and slope at the start, and value and slope at the end.
+    pub fn sum(weights: &[f64; 4], a: DVec3, slope_a: DVec3, b: DVec3, slope_b: DVec3) -> DVec3 {
+        weights[0] * a + weights[1] * slope_a + weights[2] * b + weights[3] * slope_b
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn slopes(values: &[DVec3], intervals: &[f64], ends: Ends, given: [DVec3; 2]) -> Vec<DVec3> {
+        let mut slopes = vec![DVec3::ZERO; values.len()];
+        slopes[0] = given[0];
+        slopes[values.len() - 1] = given[1];
+        SlopeSystem::new(intervals.to_vec(), ends).solve(values, &mut slopes, Lane { first: 0, stride: 1 });
+        slopes
+    }
+
+    fn scalar_at(values: &[f64], ends: Ends, given: [f64; 2], u: f64) -> f64 {
+        let spans = values.len() - 1;
+        let points: Vec<DVec3> = values.iter().map(|v| DVec3::new(*v, 0.0, 0.0)).collect();
+        let intervals = vec![1.0 / spans as f64; spans];
+        let slopes = slopes(&points, &intervals, ends, given.map(|s| DVec3::new(s, 0.0, 0.0)));
+        let i = ((u * spans as f64) as usize).min(spans - 1);
+        let weights = Hermite::new(u * spans as f64 - i as f64, intervals[i]).value;
+        Hermite::sum(&weights, points[i], slopes[i], points[i + 1], slopes[i + 1]).x
+    }
+
+    #[test]
+    fn agrees_with_reference_values() {
+        let values = [0.0, 1.0, 0.5, 2.0];
+        let natural = Ends::Open { start_given: false, end_given: false };
+        let clamped = Ends::Open { start_given: true, end_given: true };
+        for (u, of_natural, of_clamped) in
+            [(0.2, 0.8048, 0.6672), (0.5, 0.7125, 0.6597222222222), (0.9, 1.3771, 1.7761)]
+        {
+            assert!((scalar_at(&values, natural, [0.0; 2], u) - of_natural).abs() < 1e-12);
+            assert!((scalar_at(&values, clamped, [1.0, -1.0], u) - of_clamped).abs() < 1e-12);
+        }
+    }
+
+    /// Second derivative by central weights of the Hermite form at either end of an interval.
+    fn second(h: f64, a: DVec3, ma: DVec3, b: DVec3, mb: DVec3, at_end: bool) -> DVec3 {
+        let chord = (b - a) / h;
+        if at_end { (2.0 * ma + 4.0 * mb - 6.0 * chord) / h } else { (6.0 * chord - 4.0 * ma - 2.0 * mb) / h }
+    }
+
+    #[test]
+    fn periodic_splines_have_no_jump_of_curvature_anywhere() {
+        for count in [3_usize, 4, 7, 20] {
+            let values: Vec<DVec3> = (0..count)
+                .map(|i| DVec3::new((i as f64).sin(), (1.7 * i as f64).cos(), (0.3 * (i * i) as f64).sin()))
+                .collect();
+            let intervals: Vec<f64> = (0..count).map(|i| 0.2 + (i * 7 % 5) as f64).collect();
+            let m = slopes(&values, &intervals, Ends::Periodic, [DVec3::ZERO; 2]);
+            for i in 0..count {
+                let (p, n) = ((i + count - 1) % count, (i + 1) % count);
+                let left = second(intervals[p], values[p], m[p], values[i], m[i], true);
+                let right = second(intervals[i], values[i], m[i], values[n], m[n], false);
+                assert!((left - right).length() < 1e-10, "{count} knots, knot {i}: {left} {right}");
+            }
+        }
+    }
+
+    #[test]
+    fn cubics_are_reproduced_with_their_end_slopes() {
+        let f = |u: f64| DVec3::new(u * u * u, 1.0 - 2.0 * u * u, u);
+        let df = |u: f64| DVec3::new(3.0 * u * u, -4.0 * u, 1.0);
+        let knots = [0.0, 0.1, 0.7, 1.0, 1.9];
+        let values = knots.map(f);
+        let intervals: Vec<f64> = knots.windows(2).map(|k| k[1] - k[0]).collect();
+        let ends = Ends::Open { start_given: true, end_given: true };
+        for (u, m) in knots.iter().zip(slopes(&values, &intervals, ends, [df(0.0), df(1.9)])) {
+            assert!((m - df(*u)).length() < 1e-12, "{m} at {u}");
+        }
+    }
+
+    #[test]
+    fn two_knots_are_a_straight_line() {
+        let natural = Ends::Open { start_given: false, end_given: false };
+        let m = slopes(&[DVec3::ZERO, DVec3::X], &[0.5], natural, [DVec3::ZERO; 2]);
+        assert!(m.iter().all(|m| (*m - 2.0 * DVec3::X).length() < 1e-15));
+    }
+}

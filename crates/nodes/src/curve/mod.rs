@@ -1,0 +1,8 @@
+//! Nodes that work on curves.
+
+pub(crate) mod join;
+pub(crate) mod mirror;
+pub(crate) mod pick;
+pub(crate) mod resample;
+pub(crate) mod sort;
+pub(crate) mod transform;

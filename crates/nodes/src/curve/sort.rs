@@ -1,0 +1,71 @@
+//! **Sort**: puts curves in the order the detail generator needs, and says what it decided.
+//! Reference: thesis 6.4, Figure 6.11.
+
+use maquette_geometry::curve::{SortOptions, sort};
+use maquette_graph::{AtPort, Choices, NodeKind};
+
+use crate::wire;
+
+/// Where rail 0, and with it the seam of the surface, lies.
+#[derive(Clone, Copy)]
+enum Seam {
+    Left,
+    Back,
+    Right,
+    Front,
+}
+
+impl Choices for Seam {
+    const OPTIONS: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::Left, "left", "rail 0 is the one farthest to +X, the model's left"),
+        (Self::Back, "back", "rail 0 is the one farthest to -Z"),
+        (Self::Right, "right", "rail 0 is the one farthest to -X"),
+        (Self::Front, "front", "rail 0 is the one farthest to +Z"),
+    ];
+}
+
+impl Seam {
+    fn direction(self) -> glam::DVec3 {
+        match self {
+            Self::Left => glam::DVec3::X,
+            Self::Back => glam::DVec3::NEG_Z,
+            Self::Right => glam::DVec3::NEG_X,
+            Self::Front => glam::DVec3::Z,
+        }
+    }
+}
+
+pub(crate) fn kind() -> NodeKind {
+    let mut node = NodeKind::declare(
+        "sort",
+        1,
+        "curve",
+        "Orders curves into rails around an axis, all running the same way, and starts closed curves at rail 0.",
+    );
+    node.reference("thesis 6.4, Figure 6.11; paper 4.2");
+    let curves = node.input::<wire::Curves>("curves", "Rails (open) and the closed curves they run between, mixed.");
+    let seam = node.choice::<Seam>("seam", "Where rail 0 and the seam lie.");
+    let order = node.text(
+        "order",
+        "",
+        "Order pinned by hand: names or numbers of the open curves, separated by commas; empty sorts by angle.",
+    );
+    let reverse = node.boolean("reverse", false, "Run the rails the other way: start and end change places.");
+    let rails = node.output::<wire::Curves>("rails", "Open curves in order around, all running the same way.");
+    let closed = node.output::<wire::Curves>("closed", "Closed curves, counter-clockwise, started at rail 0.");
+    node.evaluate(move |ports| {
+        let order = ports.read(order).split(',').map(str::trim).filter(|name| !name.is_empty()).map(str::to_owned);
+        let options = SortOptions {
+            seam: ports.choice(seam).direction(),
+            order: order.collect(),
+            reverse_run: ports.value(reverse),
+        };
+        let sorted = sort(&ports.read(curves).0, &options).at(curves)?;
+        sorted.decisions.iter().for_each(|decision| ports.note(decision));
+        sorted.warnings.iter().for_each(|warning| ports.warn(warning));
+        ports.write(rails, wire::Curves(sorted.rails));
+        ports.write(closed, wire::Curves(sorted.closed));
+        Ok(())
+    });
+    node
+}

@@ -1,0 +1,3 @@
+//! Nodes that deform.
+
+pub(crate) mod deform_by_cross_section;

@@ -1,0 +1,3 @@
+//! Nodes that generate shapes from curves.
+
+pub(crate) mod detail_generator;

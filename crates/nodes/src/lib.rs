@@ -1,0 +1,60 @@
+//! The node kinds of Maquette: where the engine ([`maquette_graph`]) and the mathematics ([`maquette_geometry`])
+//! meet. One file a node; [`catalogue`] registers them all.
+
+mod affine;
+mod curve;
+mod deform;
+mod generate;
+mod mesh;
+mod output;
+mod section;
+mod sketch;
+mod source_file;
+mod stiffness;
+mod surface;
+mod view_plane;
+pub mod wire;
+
+use maquette_graph::{Catalogue, CatalogueError, NodeKind};
+
+/// Every node kind of this library, in the order of the source tree. A file that is not listed fails
+/// `tests/every_node.rs`.
+fn kinds() -> Vec<NodeKind> {
+    vec![
+        curve::join::kind(),
+        curve::mirror::kind(),
+        curve::pick::kind(),
+        curve::resample::kind(),
+        curve::sort::kind(),
+        curve::transform::kind(),
+        deform::deform_by_cross_section::kind(),
+        generate::detail_generator::kind(),
+        mesh::join_meshes::kind(),
+        mesh::mirror_mesh::kind(),
+        mesh::transform_mesh::kind(),
+        output::curves_out::kind(),
+        output::mesh_out::kind(),
+        section::curves_from_sections::kind(),
+        sketch::import_curves::kind(),
+        sketch::import_mesh::kind(),
+        sketch::strokes::kind(),
+        surface::surface_from_cross_sections::kind(),
+    ]
+}
+
+/// The catalogue of all node kinds, wire types and conversions of this library.
+///
+/// # Errors
+/// A kind is declared twice or its default does not fit; the tests keep that from ever being shipped.
+pub fn catalogue() -> Result<Catalogue, CatalogueError> {
+    let mut catalogue = Catalogue::new();
+    catalogue.conversion::<wire::Curve, wire::Curves>(|curve| Ok(wire::Curves(vec![curve.0.clone()])))?;
+    catalogue.conversion::<wire::Curves, wire::Curve>(|curves| match curves.0.as_slice() {
+        [curve] => Ok(wire::Curve(curve.clone())),
+        several => Err(format!("{} curves arrive where one is wanted: choose it with a `pick` node", several.len())),
+    })?;
+    for kind in kinds() {
+        catalogue.register(kind)?;
+    }
+    Ok(catalogue)
+}

@@ -1,0 +1,25 @@
+//! **Transform mesh**: moves, turns and scales a mesh.
+
+use maquette_geometry::mesh::transform;
+use maquette_graph::{AtPort, NodeKind};
+
+use crate::affine::AffineInputs;
+use crate::wire;
+
+pub(crate) fn kind() -> NodeKind {
+    let mut node = NodeKind::declare(
+        "transform-mesh",
+        1,
+        "mesh",
+        "Scales, turns and moves a mesh, in this order; normals stay outward, also where a factor is negative.",
+    );
+    let mesh = node.input::<wire::Mesh>("mesh", "Mesh to transform.");
+    let affine = AffineInputs::declare(&mut node);
+    let transformed = node.output::<wire::Mesh>("mesh", "The transformed mesh.");
+    node.evaluate(move |ports| {
+        let moved = transform(&ports.read(mesh).0, &affine.read(ports)?).at(mesh)?;
+        ports.write(transformed, wire::Mesh(moved));
+        Ok(())
+    });
+    node
+}

@@ -1,0 +1,4 @@
+//! Nodes whose values leave the graph.
+
+pub(crate) mod curves_out;
+pub(crate) mod mesh_out;

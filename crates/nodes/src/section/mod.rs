@@ -1,0 +1,3 @@
+//! Nodes that work on sections.
+
+pub(crate) mod curves_from_sections;

@@ -1,0 +1,88 @@
+//! **Import curves**: contours and sections from JSON, paths from SVG.
+
+use glam::DVec2;
+use maquette_geometry::curve::Curve;
+use maquette_geometry::file_format::{FileFormat, curves_json, svg};
+use maquette_graph::{AtPort, Choices, NodeKind};
+
+use crate::source_file;
+use crate::view_plane::ViewPlane;
+use crate::wire;
+
+/// Which point of a drawing comes to lie on the origin of the plane.
+#[derive(Clone, Copy)]
+enum Anchor {
+    BottomCentre,
+    Centre,
+    Page,
+}
+
+impl Choices for Anchor {
+    const OPTIONS: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::BottomCentre, "bottom-centre", "the middle of the drawing's lower edge"),
+        (Self::Centre, "centre", "the middle of the drawing"),
+        (Self::Page, "page", "the page's upper left corner; the drawing hangs below it"),
+    ];
+}
+
+impl Anchor {
+    /// The anchor in SVG units, y down.
+    fn of(self, paths: &[svg::Path2d]) -> DVec2 {
+        let bounds = paths.iter().flat_map(|p| &p.points).fold(None, |bounds, p| {
+            let (low, high) = bounds.unwrap_or((*p, *p));
+            Some((p.min(low), p.max(high)))
+        });
+        match (self, bounds) {
+            (Self::Page, _) | (_, None) => DVec2::ZERO,
+            (Self::Centre, Some((low, high))) => (low + high) / 2.0,
+            (Self::BottomCentre, Some((low, high))) => DVec2::new((low.x + high.x) / 2.0, high.y),
+        }
+    }
+}
+
+pub(crate) fn kind() -> NodeKind {
+    let mut node = NodeKind::declare(
+        "import-curves",
+        1,
+        "sketch",
+        "Curves of a file: contours or sections as JSON, or the paths of an SVG drawing placed on a view plane.",
+    );
+    let file = node.file("file", &["json", "svg"], "The file, .json or .svg.");
+    let plane = node.choice::<ViewPlane>("plane", "SVG: the plane on which the drawing is placed.");
+    let offset = node.length("offset", 0.0, -1e4..=1e4, "SVG: place of the plane along the axis across it.");
+    node.soft_range(offset, -1.0..=1.0);
+    let scale = node.length("scale", 0.001, 1e-9..=1e6, "SVG: length of one unit of the drawing.");
+    node.soft_range(scale, 1e-4..=0.1);
+    let anchor = node.choice::<Anchor>("anchor", "SVG: which point of the drawing lies on the plane's origin.");
+    let tolerance =
+        node.length("tolerance", 1e-4, 1e-9..=1.0, "SVG: largest distance of the points' polyline from the true path.");
+    node.soft_range(tolerance, 1e-5..=1e-2);
+    let curves = node.output::<wire::Curves>("curves", "The curves in the order of the file, with their names.");
+    node.fingerprint(move |ports| source_file::fingerprint(ports, file));
+    node.evaluate(move |ports| {
+        let path = ports.path(file)?;
+        let bytes = source_file::read(ports, file)?;
+        let imported = match FileFormat::from_path(&path.to_string_lossy()).at(file)? {
+            FileFormat::Json => curves_json::read(&bytes).at(file)?,
+            FileFormat::Svg => {
+                let (plane, offset, scale) = (ports.choice(plane), ports.value(offset), ports.value(scale));
+                let paths = svg::read(&bytes, ports.value(tolerance) / scale).at(file)?;
+                let anchor = ports.choice(anchor).of(&paths);
+                let placed = paths.iter().enumerate().map(|(index, path)| {
+                    let name = if path.name.is_empty() { format!("path {index}") } else { path.name.clone() };
+                    // SVG's y runs down.
+                    let drawn = path.points.iter().map(|p| (*p - anchor) * DVec2::new(scale, -scale));
+                    Curve::new(name, drawn.map(|p| plane.place(p, offset)).collect(), path.closed)
+                });
+                placed.collect::<Result<_, _>>().at(file)?
+            }
+            other => {
+                let message = format!("curves come from .json or .svg files, not from .{}", other.extension());
+                return Err(message).at(file);
+            }
+        };
+        ports.write(curves, wire::Curves(imported));
+        Ok(())
+    });
+    node
+}

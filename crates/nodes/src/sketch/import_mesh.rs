@@ -1,0 +1,43 @@
+//! **Import mesh**: a mesh from glTF or OBJ.
+
+use glam::DAffine3;
+use maquette_geometry::file_format::{FileFormat, gltf_read, obj};
+use maquette_geometry::mesh::{join, transform};
+use maquette_graph::{AtPort, NodeKind};
+
+use crate::source_file;
+use crate::wire;
+
+pub(crate) fn kind() -> NodeKind {
+    let mut node = NodeKind::declare("import-mesh", 1, "sketch", "A mesh from a glTF or OBJ file; quads stay quads.");
+    let file = node.file("file", &["glb", "gltf", "obj"], "The file: .glb, .gltf with embedded data, or .obj.");
+    let part = node.text("part", "", "Name of the one mesh to take; empty joins all meshes of the file.");
+    let scale = node.length("scale", 1.0, 1e-9..=1e9, "Length of one unit of the file; glTF's is a metre.");
+    node.soft_range(scale, 0.001..=1.0);
+    let mesh = node.output::<wire::Mesh>("mesh", "The mesh.");
+    node.fingerprint(move |ports| source_file::fingerprint(ports, file));
+    node.evaluate(move |ports| {
+        let path = ports.path(file)?;
+        let bytes = source_file::read(ports, file)?;
+        let meshes = match FileFormat::from_path(&path.to_string_lossy()).at(file)? {
+            FileFormat::Glb | FileFormat::Gltf => gltf_read::read(&bytes).at(file)?,
+            FileFormat::Obj => obj::read(&bytes).at(file)?,
+            other => {
+                let message = format!("meshes come from .glb, .gltf or .obj files, not from .{}", other.extension());
+                return Err(message).at(file);
+            }
+        };
+        let wanted = ports.read(part);
+        let taken: Vec<_> = meshes.iter().filter(|m| wanted.is_empty() || m.name() == wanted).collect();
+        if taken.is_empty() {
+            let known: Vec<_> = meshes.iter().map(|m| format!("\"{}\"", m.name())).collect();
+            return Err(format!("the file has no mesh \"{wanted}\"; it has {}", known.join(", "))).at(part);
+        }
+        let name = taken[0].name().to_owned();
+        let joined = join(taken).at(file)?;
+        let scaled = transform(&joined, &DAffine3::from_scale(glam::DVec3::splat(ports.value(scale)))).at(scale)?;
+        ports.write(mesh, wire::Mesh(scaled.named(name)));
+        Ok(())
+    });
+    node
+}

@@ -1,0 +1,5 @@
+//! Nodes at which a graph begins: sketches and files.
+
+pub(crate) mod import_curves;
+pub(crate) mod import_mesh;
+pub(crate) mod strokes;

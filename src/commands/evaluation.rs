@@ -1,0 +1,98 @@
+//! Opens a graph and evaluates its results: what `run` and `render` share.
+
+use std::path::PathBuf;
+
+use maquette_graph::{Catalogue, Evaluation, Evaluator, EvaluatorOptions, NodeId, OutcomeState, Request};
+
+use super::graph_file::GraphFile;
+use super::progress_bar::Progress;
+use super::{console, overrides};
+
+/// What is evaluated, and how.
+#[derive(clap::Args)]
+pub struct EvaluationArguments {
+    /// The graph, a .ron file.
+    pub(super) graph: PathBuf,
+    /// Evaluate only this result (the name of a mesh-out or curves-out node); may be given several times.
+    #[arg(long = "output", value_name = "NAME")]
+    pub(super) outputs: Vec<String>,
+    /// Put a value at an input for this evaluation, such as --set legs.count=32; may be given several times.
+    #[arg(long = "set", value_name = "NODE.PORT=VALUE")]
+    pub(super) set: Vec<String>,
+    /// Threads; 0 takes one per core. The number changes no result.
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    pub(super) threads: usize,
+    /// Write what succeeded although a node failed. The exit code is 1 all the same.
+    #[arg(long)]
+    pub(super) keep_going: bool,
+    /// Say nothing but errors.
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
+/// A graph and what its evaluation gave.
+pub(super) struct Evaluated {
+    pub(super) file: GraphFile,
+    pub(super) targets: Vec<NodeId>,
+    pub(super) evaluation: Evaluation,
+    /// One message per node that failed.
+    pub(super) failures: Vec<String>,
+}
+
+/// Evaluates; what fails in a node is in [`Evaluated::failures`], what is wrong with graph or arguments is an error.
+pub(super) fn evaluate(catalogue: &Catalogue, arguments: &EvaluationArguments) -> Result<Evaluated, Vec<String>> {
+    let mut file = GraphFile::open_sound(catalogue, &arguments.graph, arguments.quiet)?;
+    let wrong: Vec<String> =
+        arguments.set.iter().filter_map(|set| overrides::apply(&mut file.loaded.graph, set).err()).collect();
+    if !wrong.is_empty() {
+        return Err(wrong.into_iter().map(|message| format!("error: {message}")).collect());
+    }
+    let targets = targets(&file, &arguments.outputs)?;
+    let missing = file.missing_links(&targets);
+    if !missing.is_empty() {
+        return Err(missing);
+    }
+    let progress = Progress::new(!arguments.quiet);
+    let mut evaluator = Evaluator::new(&EvaluatorOptions { threads: arguments.threads, ..Default::default() });
+    let request = Request::nodes(&targets).events(&progress).base(file.base());
+    let evaluation = evaluator.evaluate(catalogue, &file.loaded.graph, &request);
+    progress.finish();
+    let mut failures = Vec::new();
+    for (id, outcome) in evaluation.outcomes() {
+        match &outcome.state {
+            OutcomeState::Failed(failure) => {
+                failures.push(file.about(id, failure.port.as_deref(), &format!("error: {}", failure.message)));
+            }
+            OutcomeState::Waiting(on) if targets.contains(&id) => {
+                failures.push(file.about(id, None, &format!("error: not made, because \"{}\" failed", on.join("\", \""))));
+            }
+            OutcomeState::Done { report, .. } if !arguments.quiet => {
+                report.warnings.iter().for_each(|w| console::remark(file.about(id, None, &format!("warning: {w}"))));
+            }
+            _ => {}
+        }
+    }
+    Ok(Evaluated { file, targets, evaluation, failures })
+}
+
+fn targets(file: &GraphFile, wanted: &[String]) -> Result<Vec<NodeId>, Vec<String>> {
+    let graph = &file.loaded.graph;
+    let results = graph.results();
+    let path = file.path.display();
+    if results.is_empty() {
+        return Err(vec![format!("{path}: error: the graph has no result: add a mesh-out or curves-out node")]);
+    }
+    if wanted.is_empty() {
+        return Ok(results);
+    }
+    let name = |id: &NodeId| graph.node(*id).map_or("", |n| n.name());
+    let find = |wanted: &String| {
+        results.iter().copied().find(|id| name(id) == wanted).ok_or_else(|| {
+            let known: Vec<_> = results.iter().map(name).collect();
+            format!("{path}: error: --output {wanted}: no result has that name; there is {}", known.join(", "))
+        })
+    };
+    let (found, unknown): (Vec<_>, Vec<_>) = wanted.iter().map(find).partition(Result::is_ok);
+    let unknown: Vec<_> = unknown.into_iter().filter_map(Result::err).collect();
+    if unknown.is_empty() { Ok(found.into_iter().flatten().collect()) } else { Err(unknown) }
+}

@@ -1,0 +1,59 @@
+//! A bar with the running nodes, on a terminal only.
+
+use std::collections::BTreeMap;
+use std::io::IsTerminal as _;
+use std::sync::{Mutex, PoisonError};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use maquette_graph::{Event, EventKind, Events, NodeId};
+
+/// Follows an evaluation on stderr; silent where that is no terminal.
+pub(super) struct Progress {
+    bar: ProgressBar,
+    running: Mutex<BTreeMap<NodeId, String>>,
+}
+
+impl Progress {
+    pub(super) fn new(wanted: bool) -> Self {
+        let shown = wanted && std::io::stderr().is_terminal();
+        let bar = if shown { ProgressBar::new(0) } else { ProgressBar::hidden() };
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} nodes  {wide_msg}") {
+            bar.set_style(style);
+        }
+        Self { bar, running: Mutex::default() }
+    }
+
+    pub(super) fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+
+    fn change(&self, change: impl FnOnce(&mut BTreeMap<NodeId, String>)) {
+        let mut running = self.running.lock().unwrap_or_else(PoisonError::into_inner);
+        change(&mut running);
+        self.bar.set_message(running.values().cloned().collect::<Vec<_>>().join(", "));
+    }
+}
+
+impl Events for Progress {
+    fn event(&self, event: &Event<'_>) {
+        if self.bar.is_hidden() {
+            return;
+        }
+        match &event.kind {
+            EventKind::Planned(count) => self.bar.set_length(*count as u64),
+            EventKind::Started => self.change(|running| {
+                running.insert(event.node, event.name.to_owned());
+            }),
+            EventKind::Progress(fraction) => self.change(|running| {
+                running.insert(event.node, format!("{} {:.0} %", event.name, fraction * 100.0));
+            }),
+            EventKind::Finished(_) | EventKind::Failed(_) | EventKind::Waiting(_) | EventKind::Cancelled => {
+                self.change(|running| {
+                    running.remove(&event.node);
+                });
+                self.bar.inc(1);
+            }
+            EventKind::Hit => {}
+        }
+    }
+}
