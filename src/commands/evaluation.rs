@@ -64,7 +64,11 @@ pub(super) fn evaluate(catalogue: &Catalogue, arguments: &EvaluationArguments) -
                 failures.push(file.about(id, failure.port.as_deref(), &format!("error: {}", failure.message)));
             }
             OutcomeState::Waiting(on) if targets.contains(&id) => {
-                failures.push(file.about(id, None, &format!("error: not made, because \"{}\" failed", on.join("\", \""))));
+                failures.push(file.about(
+                    id,
+                    None,
+                    &format!("error: not made, because \"{}\" failed", on.join("\", \"")),
+                ));
             }
             OutcomeState::Done { report, .. } if !arguments.quiet => {
                 report.warnings.iter().for_each(|w| console::remark(file.about(id, None, &format!("warning: {w}"))));

@@ -68,7 +68,7 @@ impl GraphFile {
             let Some((node, kind)) = graph.node(id).and_then(|n| Some((n, n.kind()?))) else { continue };
             for input in kind.inputs() {
                 if input.default.is_none() && !input.optional && node.source(&input.name).is_none() {
-                    let message = format!("nothing is connected; link an output that gives {}", input.wire);
+                    let message = format!("error: nothing is connected; link an output that gives {}", input.wire);
                     missing.push(self.about(id, Some(&input.name), &message));
                 }
             }
@@ -85,7 +85,7 @@ impl GraphFile {
                     && !path.is_empty()
                     && !self.base().join(path).is_file()
                 {
-                    let message = format!("the file {} does not exist", self.base().join(path).display());
+                    let message = format!("error: the file {} does not exist", self.base().join(path).display());
                     missing.push(self.about(id, Some(input), &message));
                 }
             }

@@ -95,9 +95,9 @@ fn kind_markdown(kind: &NodeKind) -> String {
     if !kind.inputs().is_empty() {
         text.push_str("| input | type | default | range | what for |\n|---|---|---|---|---|\n");
         for input in kind.inputs() {
-            let description = options(input).iter().fold(input.description.clone(), |text, (name, what)| {
-                format!("{text}<br>`{name}`: {what}")
-            });
+            let description = options(input)
+                .iter()
+                .fold(input.description.clone(), |text, (name, what)| format!("{text}<br>`{name}`: {what}"));
             let _ = writeln!(
                 text,
                 "| `{}` | {} | {} | {} | {description} |",
@@ -118,7 +118,8 @@ fn kind_markdown(kind: &NodeKind) -> String {
 }
 
 fn kind_text(kind: &NodeKind) -> String {
-    let mut text = format!("{} (version {}, {})\n  {}\n", kind.name(), kind.version(), kind.category(), kind.description());
+    let mut text =
+        format!("{} (version {}, {})\n  {}\n", kind.name(), kind.version(), kind.category(), kind.description());
     if !kind.reference_text().is_empty() {
         let _ = writeln!(text, "  reference: {}", kind.reference_text());
     }

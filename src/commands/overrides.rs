@@ -9,8 +9,7 @@ use maquette_graph::{Graph, Literal, LiteralKind};
 /// written as in a graph file. A relative path starts at the current folder.
 pub(super) fn apply(graph: &mut Graph, assignment: &str) -> Result<(), String> {
     let fail = |reason: String| format!("--set {assignment}: {reason}");
-    let (address, value) =
-        assignment.split_once('=').ok_or_else(|| fail("write it as NODE.PORT=VALUE".to_owned()))?;
+    let (address, value) = assignment.split_once('=').ok_or_else(|| fail("write it as NODE.PORT=VALUE".to_owned()))?;
     let (name, port) = address.rsplit_once('.').ok_or_else(|| fail("write it as NODE.PORT=VALUE".to_owned()))?;
     let node = graph.find(name).ok_or_else(|| {
         let hint = graph.suggest(name).map(|s| format!("; did you mean \"{s}\"?")).unwrap_or_default();
@@ -38,16 +37,15 @@ fn literal(wanted: LiteralKind, value: &str) -> Result<Literal, String> {
         LiteralKind::Number => {
             value.parse().map(Literal::Number).map_err(|_| format!("\"{value}\" is not a number, such as 0.5"))
         }
-        LiteralKind::Integer => value
-            .parse()
-            .map(Literal::Integer)
-            .map_err(|_| format!("\"{value}\" is not a whole number, such as 64")),
+        LiteralKind::Integer => {
+            value.parse().map(Literal::Integer).map_err(|_| format!("\"{value}\" is not a whole number, such as 64"))
+        }
         LiteralKind::Boolean => Err(format!("\"{value}\" is neither true nor false")),
         LiteralKind::Text => Ok(Literal::Text(value.to_owned())),
         LiteralKind::Choice => Ok(Literal::Choice(value.to_owned())),
-        LiteralKind::Vector => numbers(value).map(Literal::Vector).ok_or_else(|| {
-            format!("\"{value}\" is not three numbers separated by commas, such as 0,0.1,0")
-        }),
+        LiteralKind::Vector => numbers(value)
+            .map(Literal::Vector)
+            .ok_or_else(|| format!("\"{value}\" is not three numbers separated by commas, such as 0,0.1,0")),
         LiteralKind::Colour => numbers(value)
             .or_else(|| numbers(value).map(|[r, g, b]: [f64; 3]| [r, g, b, 1.0]))
             .map(Literal::Colour)

@@ -94,9 +94,9 @@ fn as_text(arguments: &Arguments, evaluated: &Evaluated, scene: &Scene, written:
         evaluation.hit_count(),
         milliseconds(evaluation.duration)
     ));
-    let widths = evaluation.outcomes().fold((4, 4), |(name, kind), (_, o)| {
-        (name.max(o.name.chars().count()), kind.max(o.kind.chars().count()))
-    });
+    let widths = evaluation
+        .outcomes()
+        .fold((4, 4), |(name, kind), (_, o)| (name.max(o.name.chars().count()), kind.max(o.kind.chars().count())));
     for (_, outcome) in evaluation.outcomes() {
         console::say(format!(
             "  {:name$}  {:kind$}  {}",
@@ -191,11 +191,8 @@ fn node_json(outcome: &Outcome) -> Json {
     });
     let details = match &outcome.state {
         OutcomeState::Done { report, .. } => {
-            let figures: Vec<Json> = report
-                .figures
-                .iter()
-                .map(|f| json!({ "name": f.name, "value": f.value, "unit": f.unit }))
-                .collect();
+            let figures: Vec<Json> =
+                report.figures.iter().map(|f| json!({ "name": f.name, "value": f.value, "unit": f.unit })).collect();
             json!({ "state": "done", "notes": report.notes, "warnings": report.warnings, "figures": figures })
         }
         OutcomeState::Failed(failure) => {

@@ -10,7 +10,9 @@ use maquette_geometry::scene::Scene;
 /// The format that a file's extension asks for.
 pub(super) fn format(path: &Path) -> Result<FileFormat, String> {
     match FileFormat::from_path(&path.to_string_lossy()) {
-        Ok(FileFormat::Svg) => Err(format!("{}: SVG is read, not written: choose .glb, .gltf, .obj, .ply or .json", path.display())),
+        Ok(FileFormat::Svg) => {
+            Err(format!("{}: SVG is read, not written: choose .glb, .gltf, .obj, .ply or .json", path.display()))
+        }
         Ok(format) => Ok(format),
         Err(error) => Err(error.to_string()),
     }

@@ -159,3 +159,88 @@ impl Face {
 pub(super) fn blend(values: &[Vec3; 3], weights: [f64; 3]) -> Vec3 {
     values[0] * weights[0] as f32 + values[1] * weights[1] as f32 + values[2] * weights[2] as f32
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::picture::camera::View;
+    use crate::picture::subject::points;
+    use maquette_geometry::mesh::Mesh;
+    use maquette_geometry::scene::{Material, MeshItem, Scene};
+
+    const SIZE: DVec2 = DVec2::new(200.0, 150.0);
+
+    /// A square floor, 2 m wide.
+    fn floor() -> Scene {
+        let corners = [[-1.0, 0.0, 1.0], [1.0, 0.0, 1.0], [1.0, 0.0, -1.0], [-1.0, 0.0, -1.0]];
+        let mesh = Mesh::new(corners.map(DVec3::from).to_vec(), [[0u32, 1, 2, 3]]).unwrap();
+        Scene { meshes: vec![MeshItem { name: "floor".into(), mesh, material: Material::default() }], curves: vec![] }
+    }
+
+    fn camera(subject: &Subject, scene: &Scene) -> Camera {
+        Camera::framing(View::ThreeQuarter, points(scene, true), &subject.bounds, SIZE)
+    }
+
+    /// Where the sight line through a pixel meets y = 0.
+    fn on_floor(camera: &Camera, at: DVec2) -> DVec3 {
+        let (start, direction) = camera.ray(at);
+        start - direction * (start.y / direction.y)
+    }
+
+    #[test]
+    fn interpolation_is_correct_in_perspective() {
+        let scene = floor();
+        let subject = Subject::new(&scene, true).unwrap();
+        let camera = camera(&subject, &scene);
+        let faces = faces(&subject, &camera);
+        assert_eq!(faces.len(), 2);
+        for face in &faces {
+            assert!(!face.back);
+            let at = (face.pixel[0] + face.pixel[1] * 2.0 + face.pixel[2] * 3.0) / 6.0;
+            let place = blend(&face.place, camera.in_space(face.weights(at), face.depth));
+            let expected = subject.place(on_floor(&camera, at));
+            assert!(place.distance(expected) < 1e-3, "{place} {expected}");
+            // The mean without perspective is far off: the test would see the difference.
+            assert!(blend(&face.place, face.weights(at)).distance(expected) > 5e-3);
+            let view = camera.to_view(on_floor(&camera, at));
+            assert!((face.depth_at(at) / camera.project(view).depth - 1.0).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn what_lies_behind_the_near_plane_is_cut_off() {
+        let scene = floor();
+        let subject = Subject::new(&scene, true).unwrap();
+        let camera = camera(&subject, &scene);
+        let down = DVec3::NEG_Y * (camera.ray(SIZE * 0.5).0.y - 0.1);
+        let ahead =
+            camera.back.reject_from(DVec3::Y).normalize() * -(camera.ray(SIZE * 0.5).0.reject_from(DVec3::Y).length());
+        let inside = camera.moved(down + ahead);
+        let faces = faces(&subject, &inside);
+        assert!(!faces.is_empty());
+        for face in &faces {
+            assert!(face.area > 0.0 && !face.back);
+            let reach = subject.bounds.radius;
+            for k in 0..3 {
+                assert!(face.depth[k] > 0.0 && face.depth[k] <= 1.001 / (reach * 1e-3));
+                // Still on the floor, and within it.
+                let world = face.place[k].as_dvec3() * reach + subject.bounds.centre;
+                assert!(world.y.abs() < 1e-6 && world.abs().max_element() < 1.0 + 1e-6, "{world}");
+            }
+        }
+        // Sample a pixel below the horizon: what is seen there is the floor just ahead.
+        let at = SIZE * DVec2::new(0.5, 0.9);
+        let seen = faces.iter().find(|f| f.weights(at).iter().all(|w| *w >= 0.0)).unwrap();
+        let place = blend(&seen.place, inside.in_space(seen.weights(at), seen.depth));
+        assert!(place.distance(subject.place(on_floor(&inside, at))) < 1e-3);
+    }
+
+    #[test]
+    fn seen_from_below_it_is_a_back_face() {
+        let scene = floor();
+        let subject = Subject::new(&scene, true).unwrap();
+        let camera = camera(&subject, &scene);
+        let below = camera.clone().moved(DVec3::NEG_Y * 2.0 * camera.ray(SIZE * 0.5).0.y);
+        assert!(faces(&subject, &below).iter().all(|face| face.back && face.area > 0.0));
+    }
+}

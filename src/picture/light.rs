@@ -110,3 +110,52 @@ fn around(centre: Vec3) -> Vec<Vec3> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::picture::camera::View;
+    use glam::{DVec2, DVec3};
+    use maquette_geometry::mesh::Mesh;
+    use maquette_geometry::scene::{Material, MeshItem, Scene};
+
+    /// A box of side 2 that is open at the top, and has its floor in two colours of air: one corner far outside.
+    fn well() -> Scene {
+        let corner = |i: u32| DVec3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)) * 2.0 - 1.0;
+        let walls = [[0u32, 4, 5, 1], [0, 2, 6, 4], [1, 5, 7, 3], [0, 1, 3, 2], [4, 6, 7, 5]];
+        let mesh = Mesh::new((0..8).map(corner).collect(), walls).unwrap();
+        Scene { meshes: vec![MeshItem { name: "well".into(), mesh, material: Material::default() }], curves: vec![] }
+    }
+
+    #[test]
+    fn a_well_is_dark_at_its_bottom() {
+        let scene = well();
+        let subject = Subject::new(&scene, true).unwrap();
+        let camera = Camera::framing(
+            View::Front,
+            crate::picture::subject::points(&scene, true),
+            &subject.bounds,
+            DVec2::new(100.0, 100.0),
+        );
+        let studio = Studio::new(&subject, &camera);
+        let seen = |y: f64| studio.sky_visibility(subject.place(DVec3::new(0.1, y, 0.05)), Vec3::Y);
+        assert!(seen(1.5) > 0.999);
+        // Seen from the middle of the floor the opening, a square at twice its half side, has a form factor of 0.24;
+        // the sky is brighter above.
+        assert!((0.2..0.5).contains(&seen(-0.98)), "{}", seen(-0.98));
+        assert!(seen(0.0) > seen(-0.5) && seen(-0.5) > seen(-0.98));
+        // From the left at 45 degrees the key light does not reach the bottom.
+        assert!(studio.key_visibility(subject.place(DVec3::new(-0.5, -0.95, 0.0)), Vec3::Y) < 0.05);
+        assert!(studio.key_visibility(subject.place(DVec3::new(0.0, 1.5, 0.0)), Vec3::Y) > 0.999);
+    }
+
+    #[test]
+    fn directions_are_unit_vectors_spread_evenly() {
+        let all = dome_directions(200);
+        assert!(all.iter().all(|d| (d.length() - 1.0).abs() < 1e-5 && d.y > -0.31));
+        let mean = all.iter().sum::<Vec3>() / 200.0;
+        assert!(mean.x.abs() < 0.02 && mean.z.abs() < 0.02, "{mean}");
+        let key = Vec3::new(-0.6, 0.7, 0.4).normalize();
+        assert!(around(key).iter().all(|d| d.dot(key) >= KEY_RADIUS_DEGREES.to_radians().cos()));
+    }
+}

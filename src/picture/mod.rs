@@ -13,6 +13,8 @@ mod shading;
 mod shadow_map;
 mod stroke;
 mod subject;
+#[cfg(test)]
+mod tests;
 mod tile;
 mod wireframe;
 

@@ -88,10 +88,8 @@ impl TileSamples {
                 let mut covered = mask;
                 if (0..3).any(|i| value[i] + least[i] < 0.0) {
                     let mut inside = 0_u16;
-                    for k in 0..SAMPLES {
-                        let hit = value[0] + steps[0][k] >= 0.0
-                            && value[1] + steps[1][k] >= 0.0
-                            && value[2] + steps[2][k] >= 0.0;
+                    for (k, ((s0, s1), s2)) in steps[0].iter().zip(&steps[1]).zip(&steps[2]).enumerate() {
+                        let hit = value[0] + s0 >= 0.0 && value[1] + s1 >= 0.0 && value[2] + s2 >= 0.0;
                         inside |= u16::from(hit) << k;
                     }
                     covered &= inside;

@@ -8,7 +8,7 @@ use super::light::Studio;
 /// Colour of single-sided surfaces seen from behind, linear.
 const WARNING: Vec3 = Vec3::new(0.60, 0.055, 0.045);
 /// Darker and slightly cooler: the inside of a double-sided surface.
-const INSIDE: Vec3 = Vec3::new(0.50, 0.54, 0.60);
+const INSIDE: Vec3 = Vec3::new(0.44, 0.48, 0.54);
 
 const KEY_COLOUR: Vec3 = Vec3::new(1.10, 1.05, 0.97);
 const FILL_COLOUR: Vec3 = Vec3::new(0.11, 0.13, 0.17);
@@ -134,5 +134,27 @@ impl ToneCurve {
     pub fn bytes(&self, colour: Vec3) -> [u8; 3] {
         let last = self.0.len() - 1;
         colour.to_array().map(|c| self.0[((c * Self::FINENESS + 0.5) as usize).min(last)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_survive_below_the_roll_off() {
+        let tone = ToneCurve::new();
+        for byte in 0..=230_u8 {
+            let linear = to_linear(Vec3::splat(f32::from(byte) / 255.0));
+            assert_eq!(tone.bytes(linear), [byte; 3]);
+        }
+    }
+
+    #[test]
+    fn more_light_is_never_darker_and_white_is_reached() {
+        let tone = ToneCurve::new();
+        assert!(tone.0.is_sorted());
+        assert_eq!(tone.bytes(Vec3::splat(9.0)), [255; 3]);
+        assert_eq!(tone.bytes(Vec3::new(f32::NAN, -1.0, f32::INFINITY)), [0, 0, 255]);
     }
 }

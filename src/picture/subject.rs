@@ -13,6 +13,9 @@ use super::shading::Surface;
 /// Polygons that meet at more than this angle keep a hard edge where a mesh brings no normals, degrees.
 const CREASE_DEGREES: f64 = 45.0;
 
+/// Opacity from which on a surface casts a shadow.
+const SHADOW_OPACITY: f64 = 0.75;
+
 /// The scene, made ready. *Subject units* are centred on the bounds, with their radius as 1.
 pub(super) struct Subject<'a> {
     /// Bounds of all that is drawn.
@@ -53,7 +56,7 @@ impl<'a> Subject<'a> {
             // More vertices than 32-bit indices reach would not fit into memory.
             let first = places.len() as u32;
             places.extend(model.mesh.positions().iter().map(|p| ((p - bounds.centre) / bounds.radius).as_vec3()));
-            if model.opacity >= 0.5 {
+            if model.opacity >= SHADOW_OPACITY {
                 let vertex = |corner: usize| first.wrapping_add(model.mesh.corners()[corner]);
                 shadows.extend(model.triangles.iter().map(|t| t.map(vertex)));
             }

@@ -33,6 +33,7 @@ pub struct StrokePoint {
 
 /// A stroke as it was drawn.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Stroke {
     /// Name; may be empty.
     #[serde(default)]
@@ -102,6 +103,21 @@ impl LiteralKind {
         ]
         .into_iter()
         .find_map(|(known, kind)| (known == wire).then_some(kind))
+    }
+
+    /// What such a literal is, with its article, for messages.
+    pub(crate) fn phrase(self) -> &'static str {
+        match self {
+            Self::Number => "a number",
+            Self::Integer => "a whole number",
+            Self::Boolean => "a yes or no",
+            Self::Text => "a text",
+            Self::Choice => "a choice",
+            Self::Vector => "a vector",
+            Self::Colour => "a colour",
+            Self::Strokes => "strokes",
+            Self::File => "a file",
+        }
     }
 
     /// How such a literal is written in a file.

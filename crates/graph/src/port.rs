@@ -92,12 +92,16 @@ impl InputSpec {
         let fits = wanted == Some(literal.kind())
             || matches!((wanted, literal), (Some(LiteralKind::Number), Literal::Integer(_)));
         if !fits {
-            return Some(match wanted {
-                Some(kind) => {
-                    format!("it takes a {} such as {}, not a {:?}", self.wire, kind.example(), literal.kind())
-                }
+            let mut reason = match wanted {
+                Some(kind) => format!("it takes {} such as {}, not {}", kind.phrase(), kind.example(), spelled(literal)),
                 None => format!("it takes {} from a link; a literal can't stand here", self.wire),
-            });
+            };
+            if let (Some(LiteralKind::Integer), Literal::Number(number)) = (wanted, literal)
+                && number.fract() == 0.0
+            {
+                reason.push_str(": leave out the decimal point");
+            }
+            return Some(reason);
         }
         literal.not_finite().or_else(|| self.refuses_value(&literal.to_value()))
     }
@@ -117,6 +121,16 @@ impl InputSpec {
             return Some(format!("\"{}\" is not an option: choose one of {}", choice.0, options.join(", ")));
         }
         None
+    }
+}
+
+/// A literal of the wrong kind, for messages.
+fn spelled(literal: &Literal) -> String {
+    match literal {
+        Literal::Number(number) => format!("the number {number:?}"),
+        Literal::Integer(integer) => format!("the whole number {integer}"),
+        Literal::Boolean(flag) => flag.to_string(),
+        other => other.kind().phrase().to_owned(),
     }
 }
 

@@ -37,6 +37,8 @@ impl AffineInputs {
         // Extrinsic: about the fixed axes, X first.
         let turn = DQuat::from_euler(EulerRot::ZYX, z, y, x);
         let turn_and_scale = DAffine3::from_scale_rotation_translation(scale, turn, DVec3::ZERO);
-        Ok(DAffine3::from_translation(pivot + vector(self.translate)) * turn_and_scale * DAffine3::from_translation(-pivot))
+        Ok(DAffine3::from_translation(pivot + vector(self.translate))
+            * turn_and_scale
+            * DAffine3::from_translation(-pivot))
     }
 }

@@ -5,10 +5,10 @@ mod affine;
 mod curve;
 mod deform;
 mod generate;
+mod input;
 mod mesh;
 mod output;
 mod section;
-mod sketch;
 mod source_file;
 mod stiffness;
 mod surface;
@@ -29,15 +29,15 @@ fn kinds() -> Vec<NodeKind> {
         curve::transform::kind(),
         deform::deform_by_cross_section::kind(),
         generate::detail_generator::kind(),
+        input::import_curves::kind(),
+        input::import_mesh::kind(),
+        input::sketch::kind(),
         mesh::join_meshes::kind(),
         mesh::mirror_mesh::kind(),
         mesh::transform_mesh::kind(),
         output::curves_out::kind(),
         output::mesh_out::kind(),
         section::curves_from_sections::kind(),
-        sketch::import_curves::kind(),
-        sketch::import_mesh::kind(),
-        sketch::strokes::kind(),
         surface::surface_from_cross_sections::kind(),
     ]
 }

@@ -19,7 +19,9 @@ fn reason(path: &Path, error: &std::io::Error) -> String {
     let path = path.display();
     match error.kind() {
         std::io::ErrorKind::NotFound => {
-            format!("the file {path} does not exist: put it there, or correct the path (it starts at the graph's folder)")
+            format!(
+                "the file {path} does not exist: put it there, or correct the path (it starts at the graph's folder)"
+            )
         }
         _ => format!("the file {path} can't be read: {error}"),
     }

@@ -136,7 +136,8 @@ impl Wire for Curves {
 
 impl Wire for Sections {
     const NAME: &'static str = "sections";
-    const DESCRIPTION: &'static str = "A stack of cross-sections with corresponding points: what a surface is skinned through.";
+    const DESCRIPTION: &'static str =
+        "A stack of cross-sections with corresponding points: what a surface is skinned through.";
 
     fn hash_content(&self, hasher: &mut ContentHasher) {
         hasher.integer(self.0.nodes() as u64);

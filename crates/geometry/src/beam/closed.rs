@@ -258,4 +258,32 @@ mod tests {
         assert!(matches!(beam.reactions(&[1.0]), Err(BeamError::Count { found: 1, needed: 12, .. })));
         assert!(matches!(beam.reactions(&[f64::INFINITY; 12]), Err(BeamError::NotFinite { index: 0, .. })));
     }
+
+    proptest::proptest! {
+        #[test]
+        fn turning_and_mirroring_the_pins_turns_and_mirrors_the_curve(
+            nodes in 5_usize..200,
+            at in proptest::collection::vec((0_usize..200, -10.0..10.0_f64), 1..24),
+            turn in 0_usize..200,
+            ratio in 0.0..1e4_f64,
+        ) {
+            let mut pins: Vec<(usize, f64)> = at.iter().map(|(pin, value)| (pin % nodes, *value)).collect();
+            pins.sort_by_key(|pin| pin.0);
+            pins.dedup_by_key(|pin| pin.0);
+            let solve = |map: &dyn Fn(usize) -> usize| {
+                let at: Vec<usize> = pins.iter().map(|pin| map(pin.0)).collect();
+                let values: Vec<f64> = pins.iter().map(|pin| pin.1).collect();
+                let stiffness = Stiffness::new(1.0, ratio).unwrap();
+                ClosedBeam::new(nodes, &at, stiffness).unwrap().solve(&values).unwrap()
+            };
+            let curve = solve(&|pin| pin);
+            let turned = solve(&|pin| (pin + turn) % nodes);
+            let mirrored = solve(&|pin| (nodes - pin) % nodes);
+            let largest = curve.iter().fold(10.0_f64, |m, d| m.max(d.abs()));
+            for i in 0..nodes {
+                proptest::prop_assert!((curve[i] - turned[(i + turn) % nodes]).abs() < 1e-12 * largest);
+                proptest::prop_assert!((curve[i] - mirrored[(nodes - i) % nodes]).abs() < 1e-12 * largest);
+            }
+        }
+    }
 }

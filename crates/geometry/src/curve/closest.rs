@@ -70,6 +70,12 @@ mod tests {
     }
 
     #[test]
+    fn of_equally_close_points_the_first_is_taken() {
+        let closed = Curve::new("square", square(), true).unwrap();
+        assert_eq!(closest(&closed, DVec3::new(0.5, 0.5, 0.0)).segment, 0);
+    }
+
+    #[test]
     fn huge_or_strange_points_do_not_panic() {
         let closed = Curve::new("square", square(), true).unwrap();
         assert_eq!(closest(&closed, DVec3::NAN).segment, 0);

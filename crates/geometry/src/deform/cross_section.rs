@@ -153,7 +153,7 @@ fn find_section(sections: &Sections, contour: &Curve, notes: &mut Vec<String>) -
     };
     let (low, high) = ring.bounds();
     let size = (high - low).length();
-    if !(apart <= size) {
+    if apart.is_nan() || apart > size {
         return Err(CrossSectionError::TooFar { contour: name(), distance: apart, section, size });
     }
     for border in [0, last] {

@@ -204,9 +204,15 @@ mod tests {
             (r#"{"name":"arm"}"#, "contour 1 \"arm\": it has no \"points\": expected a list of [x, y, z] in metres"),
             (r#"{"points":{}}"#, "contour 1: \"points\": expected a list of [x, y, z], found an object"),
             (r#"{"closed":"yes","points":[]}"#, "contour 1: \"closed\": expected true or false, found \"yes\""),
-            (r#"{"name":"arm","points":[[0,0,0],[1,0]]}"#, "contour 1 \"arm\", point 1: expected three numbers [x, y, z] in metres, found a list of 2"),
+            (
+                r#"{"name":"arm","points":[[0,0,0],[1,0]]}"#,
+                "contour 1 \"arm\", point 1: expected three numbers [x, y, z] in metres, found a list of 2",
+            ),
             (r#"{"points":[[0,0,null]]}"#, "contour 1, point 0: expected three numbers"),
-            (r#"{"points":[[0,0,0],[1,0,0]],"pressure":[1,"a"]}"#, "contour 1: \"pressure\": expected a list of one number a point"),
+            (
+                r#"{"points":[[0,0,0],[1,0,0]],"pressure":[1,"a"]}"#,
+                "contour 1: \"pressure\": expected a list of one number a point",
+            ),
         ] {
             let message = entry(text);
             assert!(message.starts_with("not a valid curves JSON file: ") && message.contains(expected), "{message}");

@@ -6,7 +6,8 @@ use gltf_json::{Accessor, Index, Material, Mesh, Node, Root, accessor, buffer, e
 
 use super::WriteError;
 use super::output::{
-    CornerWeld, check, checked_colour, checked_factor, distinct_corners, linear_from_srgb, mesh_name, single, unique_names,
+    CornerWeld, check, checked_colour, checked_factor, distinct_corners, linear_from_srgb, mesh_name, single,
+    unique_names,
 };
 use crate::mesh::triangulate::polygon_triangles;
 use crate::scene::{CurveItem, MeshItem, Scene};
@@ -203,10 +204,7 @@ impl Document {
         const UNLIT: &str = "KHR_materials_unlit";
         let mut written = base_material(name, checked_colour(&item.name, item.colour)?);
         written.pbr_metallic_roughness.metallic_factor = material::StrengthFactor(0.0);
-        written.extensions = Some(extensions::material::Material {
-            unlit: Some(extensions::material::Unlit {}),
-            ..extensions::material::Material::default()
-        });
+        written.extensions.get_or_insert_default().unlit = Some(extensions::material::Unlit {});
         if self.root.extensions_used.is_empty() {
             self.root.extensions_used.push(UNLIT.to_owned());
         }

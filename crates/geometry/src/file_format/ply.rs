@@ -109,7 +109,8 @@ mod tests {
         let wide = header.contains("property list uint int");
         let polygons = (0..count("face"))
             .map(|_| {
-                let corners = if wide { u32::from_le_bytes(take(4).try_into().unwrap()) } else { u32::from(take(1)[0]) };
+                let corners =
+                    if wide { u32::from_le_bytes(take(4).try_into().unwrap()) } else { u32::from(take(1)[0]) };
                 take(4 * corners as usize).chunks_exact(4).map(|b| u32::from_le_bytes(b.try_into().unwrap())).collect()
             })
             .collect();
@@ -189,9 +190,6 @@ mod tests {
         assert_eq!(write(&Scene::default()), Err(WriteError::NothingToWrite));
         let mesh = Mesh::new(vec![DVec3::ZERO, DVec3::X, 1e200 * DVec3::Y], [[0, 1, 2]]).unwrap();
         let scene = Scene { meshes: vec![item("huge", mesh)], curves: vec![] };
-        assert_eq!(
-            write(&scene),
-            Err(WriteError::OutOfRange { name: "huge".to_owned(), what: "vertex", index: 2 })
-        );
+        assert_eq!(write(&scene), Err(WriteError::OutOfRange { name: "huge".to_owned(), what: "vertex", index: 2 }));
     }
 }

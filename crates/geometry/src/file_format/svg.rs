@@ -119,7 +119,7 @@ fn parse(bytes: &[u8]) -> Result<usvg::Tree, ReadError> {
         ..usvg::Options::default()
     };
     usvg::Tree::from_xmltree(&document, &options)
-        .map_err(|error| malformed("the root element".to_owned(), error.to_string()))
+        .map_err(|error| malformed("the drawing".to_owned(), error.to_string()))
 }
 
 /// The first element that lies too deep. The walk has no recursion, unlike what comes behind it.

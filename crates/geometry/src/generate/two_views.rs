@@ -46,7 +46,7 @@ pub fn two_views(
         ViewPlacement::Centred => view_normals(rails, &mut notes),
         ViewPlacement::AsDrawn => [None, None],
     };
-    let arcs = rails.each_ref().map(|rail| ArcLength::of(rail));
+    let arcs = rails.each_ref().map(ArcLength::of);
     let mut rows = Vec::with_capacity(options.sections);
     for (done, t) in stations(options.sections, base.is_some(), tip.is_some()).into_iter().enumerate() {
         report(progress, done, options.sections)?;
@@ -82,7 +82,7 @@ struct Apex {
 impl Apex {
     fn find(ends: [DVec3; 4], snap: f64) -> Option<Self> {
         let apart = ends.iter().flat_map(|p| ends.iter().map(|q| p.distance(*q))).fold(0.0, f64::max);
-        if !(apart <= snap) {
+        if apart.is_nan() || apart > snap {
             return None;
         }
         let point = if apart == 0.0 { ends[0] } else { ends.iter().copied().sum::<DVec3>() / 4.0 };
@@ -204,7 +204,7 @@ mod tests {
         let mut rails = leg();
         rails[0] = rail("left", 50, |t| DVec3::new(0.29 - 0.15 * t + bulge(t), t, 0.025));
         rails[3] = rail("front", 50, |t| DVec3::new(0.1445, 1.1 * t, 0.13 * t + bulge(1.0 - t)));
-        let (made, drawn) = (run(&rails, &GenerateOptions::default()), rails.each_ref().map(|r| ArcLength::of(r)));
+        let (made, drawn) = (run(&rails, &GenerateOptions::default()), rails.each_ref().map(ArcLength::of));
         let as_drawn =
             run(&rails, &GenerateOptions { placement: ViewPlacement::AsDrawn, ..GenerateOptions::default() });
         for (k, (section, flat)) in made.sections.iter().zip(as_drawn.sections.iter()).enumerate() {

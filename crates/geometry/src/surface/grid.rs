@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::knots;
 use super::pole::{self, PoleShape, RoundPole};
 use super::skin::{SkinError, SkinOptions};
-use super::spline::{Ends, Hermite, Lane, SlopeSystem};
+use super::spline::{Ends, Hermite, SlopeSystem};
 use crate::sections::Sections;
 
 /// Vertices row after row. A row at a pole has a single vertex.
@@ -92,9 +92,7 @@ pub(crate) fn sample(
     }
     let ends = Ends::Open { start_given: tips[0].is_some(), end_given: tips[1].is_some() };
     let system = SlopeSystem::new(intervals, ends);
-    for column in 0..nodes {
-        system.solve(points, &mut slopes, Lane { first: column, stride: nodes });
-    }
+    system.solve(points, &mut slopes, nodes);
 
     let ends = if closed { Ends::Periodic } else { Ends::Open { start_given: false, end_given: false } };
     let across = SlopeSystem::new(knots::across(sections, options.parameter, poles), ends);
@@ -166,7 +164,7 @@ fn round_poles(
 fn spread(values: &[DVec3], system: &SlopeSystem, nodes: usize, steps: usize) -> Dense {
     let spans = system.intervals().len();
     let rows = values.len() / nodes;
-    let mut slopes = vec![DVec3::ZERO; values.len()];
+    let mut slopes = vec![DVec3::ZERO; nodes];
     let capacity = rows * (spans * steps + 1);
     let mut dense = Dense { value: Vec::with_capacity(capacity), derivative: Vec::with_capacity(capacity) };
     let weights: Vec<Hermite> = system
@@ -174,19 +172,19 @@ fn spread(values: &[DVec3], system: &SlopeSystem, nodes: usize, steps: usize) ->
         .iter()
         .flat_map(|h| (1..steps).map(|step| Hermite::new(step as f64 / steps as f64, *h)))
         .collect();
-    for row in 0..rows {
-        let first = row * nodes;
-        system.solve(values, &mut slopes, Lane { first, stride: 1 });
+    for values in values.chunks_exact(nodes) {
+        system.solve(values, &mut slopes, 1);
         for j in 0..nodes {
-            dense.value.push(values[first + j]);
-            dense.derivative.push(slopes[first + j]);
+            dense.value.push(values[j]);
+            dense.derivative.push(slopes[j]);
             if j == spans {
                 continue;
             }
-            let (a, b) = (first + j, first + if j + 1 == nodes { 0 } else { j + 1 });
+            let next = if j + 1 == nodes { 0 } else { j + 1 };
             for weights in &weights[j * (steps - 1)..(j + 1) * (steps - 1)] {
-                dense.value.push(Hermite::sum(&weights.value, values[a], slopes[a], values[b], slopes[b]));
-                dense.derivative.push(Hermite::sum(&weights.derivative, values[a], slopes[a], values[b], slopes[b]));
+                let sum = |weights| Hermite::sum(weights, values[j], slopes[j], values[next], slopes[next]);
+                dense.value.push(sum(&weights.value));
+                dense.derivative.push(sum(&weights.derivative));
             }
         }
     }

@@ -32,19 +32,6 @@ pub(crate) struct SlopeSystem {
     wrap: Option<(Vec<f64>, f64)>,
 }
 
-/// Where the values of one column stand in an array.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Lane {
-    pub first: usize,
-    pub stride: usize,
-}
-
-impl Lane {
-    fn at(self, knot: usize) -> usize {
-        self.first + knot * self.stride
-    }
-}
-
 impl SlopeSystem {
     /// Factors the system. Intervals must be positive and finite; at least one, or three where periodic.
     pub fn new(intervals: Vec<f64>, ends: Ends) -> Self {
@@ -115,42 +102,56 @@ impl SlopeSystem {
         self.inverse_pivot.len()
     }
 
-    /// Writes the slope at each knot of a column of values into the same places of `slopes`. Slopes that are given
-    /// must stand in `slopes` before.
-    pub fn solve(&self, values: &[DVec3], slopes: &mut [DVec3], lane: Lane) {
+    /// Writes the slope at each knot of as many columns as there are `lanes`. Both arrays hold the first knot of all
+    /// columns, then the second, and so on. Slopes that are given must stand in `slopes` before.
+    pub fn solve(&self, values: &[DVec3], slopes: &mut [DVec3], lanes: usize) {
         let count = self.knots();
-        let spans = self.intervals.len();
-        let chord = |i: usize| {
-            let next = if i + 1 == count { 0 } else { i + 1 };
-            (values[lane.at(next)] - values[lane.at(i)]) / self.intervals[i]
-        };
         let periodic = self.ends == Ends::Periodic;
-        let mut before = chord(if periodic { count - 1 } else { 0 });
+        let row = |knot: usize| &values[knot * lanes..(knot + 1) * lanes];
         for i in 0..count {
-            let at = lane.at(i);
-            let right = if let Ends::Open { start_given, end_given } = self.ends
-                && (i == 0 || i + 1 == count)
-            {
+            let (done, open) = slopes.split_at_mut(i * lanes);
+            let own = &mut open[..lanes];
+            let previous = if i == 0 { count - 1 } else { i - 1 };
+            let next = if i + 1 == count { 0 } else { i + 1 };
+            let (before, at, after) = (row(previous), row(i), row(next));
+            if periodic || (i > 0 && i + 1 < count) {
+                let (h_before, h_after) = (self.intervals[previous], self.intervals[i]);
+                let (to_before, to_after) = (3.0 * h_after / h_before, 3.0 * h_before / h_after);
+                for (k, own) in own.iter_mut().enumerate() {
+                    *own = to_before * (at[k] - before[k]) + to_after * (after[k] - at[k]);
+                }
+            } else if let Ends::Open { start_given, end_given } = self.ends {
                 let given = if i == 0 { start_given } else { end_given };
-                if given { slopes[at] } else { 3.0 * before }
+                let (from, to, h) =
+                    if i == 0 { (at, after, self.intervals[0]) } else { (before, at, self.intervals[previous]) };
+                if !given {
+                    for (k, own) in own.iter_mut().enumerate() {
+                        *own = 3.0 / h * (to[k] - from[k]);
+                    }
+                }
+            }
+            let pivot = self.inverse_pivot[i];
+            if i == 0 {
+                own.iter_mut().for_each(|own| *own *= pivot);
             } else {
-                let after = chord(i);
-                let (h_before, h_after) = (self.intervals[if i == 0 { spans - 1 } else { i - 1 }], self.intervals[i]);
-                let right = 3.0 * (h_after * before + h_before * after);
-                before = after;
-                right
-            };
-            let carried = if i == 0 { DVec3::ZERO } else { self.lower[i] * slopes[lane.at(i - 1)] };
-            slopes[at] = (right - carried) * self.inverse_pivot[i];
+                let lower = self.lower[i];
+                for (own, carried) in own.iter_mut().zip(&done[previous * lanes..]) {
+                    *own = (*own - lower * *carried) * pivot;
+                }
+            }
         }
         for i in (0..count - 1).rev() {
-            let next = slopes[lane.at(i + 1)];
-            slopes[lane.at(i)] -= self.upper[i] * next;
+            let (own, behind) = slopes.split_at_mut((i + 1) * lanes);
+            for (own, next) in own[i * lanes..].iter_mut().zip(behind) {
+                *own -= self.upper[i] * *next;
+            }
         }
         if let Some((z, last_weight)) = &self.wrap {
-            let residual = slopes[lane.at(0)] + *last_weight * slopes[lane.at(count - 1)];
-            for (i, z) in z.iter().enumerate() {
-                slopes[lane.at(i)] -= *z * residual;
+            for lane in 0..lanes {
+                let residual = slopes[lane] + *last_weight * slopes[(count - 1) * lanes + lane];
+                for (i, z) in z.iter().enumerate() {
+                    slopes[i * lanes + lane] -= *z * residual;
+                }
             }
         }
     }
@@ -188,7 +189,7 @@ mod tests {
         let mut slopes = vec![DVec3::ZERO; values.len()];
         slopes[0] = given[0];
         slopes[values.len() - 1] = given[1];
-        SlopeSystem::new(intervals.to_vec(), ends).solve(values, &mut slopes, Lane { first: 0, stride: 1 });
+        SlopeSystem::new(intervals.to_vec(), ends).solve(values, &mut slopes, 1);
         slopes
     }
 
@@ -248,6 +249,24 @@ mod tests {
         let ends = Ends::Open { start_given: true, end_given: true };
         for (u, m) in knots.iter().zip(slopes(&values, &intervals, ends, [df(0.0), df(1.9)])) {
             assert!((m - df(*u)).length() < 1e-12, "{m} at {u}");
+        }
+    }
+
+    #[test]
+    fn columns_are_solved_side_by_side_as_one_by_one() {
+        let value = |i: usize, lane: usize| DVec3::new((i * 3 + lane) as f64, (i * lane) as f64, 0.3).map(f64::sin);
+        let intervals = vec![0.5, 1.0, 0.2, 0.7, 2.0];
+        for ends in [Ends::Periodic, Ends::Open { start_given: true, end_given: false }] {
+            let system = SlopeSystem::new(intervals.clone(), ends);
+            let count = system.knots();
+            let values: Vec<DVec3> = (0..count).flat_map(|i| (0..3).map(move |lane| value(i, lane))).collect();
+            let mut together = vec![DVec3::ONE; values.len()];
+            system.solve(&values, &mut together, 3);
+            for lane in 0..3 {
+                let mut alone = vec![DVec3::ONE; count];
+                system.solve(&(0..count).map(|i| value(i, lane)).collect::<Vec<_>>(), &mut alone, 1);
+                assert!((0..count).all(|i| alone[i] == together[3 * i + lane]));
+            }
         }
     }
 

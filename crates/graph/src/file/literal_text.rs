@@ -2,6 +2,8 @@
 
 use serde::Deserialize;
 
+use crate::file::place::LineIndex;
+use crate::file::syntax::in_words;
 use crate::literal::{Literal, Stroke};
 
 /// What a file may say at an input.
@@ -51,8 +53,8 @@ pub fn parse_literal(text: &str) -> Result<Literal, LiteralError> {
 pub(super) fn parse(text: &str) -> Result<Spelled, LiteralError> {
     let text = text.trim();
     let fail = |error: ron::error::SpannedError| LiteralError {
-        offset: byte_of(text, error.span.start.line, error.span.start.col),
-        message: format!("{}; {EXPECTED}", error.code),
+        offset: LineIndex::new(text).byte(text, error.span.start.line, error.span.start.col),
+        message: format!("{}; {EXPECTED}", in_words(&error.code)),
     };
     let literal = match text.chars().next() {
         None => return Err(LiteralError { offset: 0, message: format!("nothing is written; {EXPECTED}") }),
@@ -82,11 +84,4 @@ pub(super) fn parse(text: &str) -> Result<Spelled, LiteralError> {
         },
     };
     Ok(Spelled::Literal(literal))
-}
-
-/// Byte of a line and column, both counted from 1.
-pub(super) fn byte_of(text: &str, line: usize, column: usize) -> usize {
-    let line_start: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
-    let rest = &text[line_start..];
-    line_start + rest.char_indices().nth(column.saturating_sub(1)).map_or(rest.len(), |(byte, _)| byte)
 }

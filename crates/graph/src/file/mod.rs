@@ -24,9 +24,12 @@
 //! version does not know (kinds, inputs, fields) is reported with its place and written back as it was. Comments are
 //! not kept: use `notes` for the graph and `note` for a node.
 
+mod link;
 mod literal_text;
+mod place;
 mod problem;
 mod read;
+mod syntax;
 mod tree;
 mod write;
 

@@ -76,10 +76,3 @@ pub enum FileError {
         remedy: String,
     },
 }
-
-/// Line and column of a byte, both counted from 1.
-pub(crate) fn line_and_column(text: &str, offset: usize) -> (usize, usize) {
-    let before = text.get(..offset).unwrap_or(text);
-    let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-    (1 + before.matches('\n').count(), 1 + before[line_start..].chars().count())
-}

@@ -47,10 +47,10 @@ impl<'de> Visitor<'de> for FileVisitor {
         let mut tree = FileTree::default();
         while let Some(name) = map.next_key::<String>()? {
             match name.as_str() {
-                "version" => once(&mut tree.version, &name, map.next_value()?)?,
-                "notes" => once(&mut tree.notes, &name, map.next_value()?)?,
-                "nodes" => once(&mut tree.nodes, &name, map.next_value()?)?,
-                "layout" => once(&mut tree.layout, &name, map.next_value()?)?,
+                "version" => once(&mut tree.version, &name, &mut map)?,
+                "notes" => once(&mut tree.notes, &name, &mut map)?,
+                "nodes" => once(&mut tree.nodes, &name, &mut map)?,
+                "layout" => once(&mut tree.layout, &name, &mut map)?,
                 _ => tree.unknown.push((name, map.next_value()?)),
             }
         }
@@ -58,11 +58,18 @@ impl<'de> Visitor<'de> for FileVisitor {
     }
 }
 
-fn once<T, E: serde::de::Error>(slot: &mut Option<T>, name: &str, value: T) -> Result<(), E> {
-    match slot.replace(value) {
-        None => Ok(()),
-        Some(_) => Err(E::custom(format!("the field \"{name}\" occurs twice"))),
+/// Reads the value of a field that may occur once. The error comes before the value is read, so that its place in the
+/// file is that of the name.
+fn once<'de, T, A>(slot: &mut Option<T>, name: &str, map: &mut A) -> Result<(), A::Error>
+where
+    T: Deserialize<'de>,
+    A: MapAccess<'de>,
+{
+    if slot.is_some() {
+        return Err(A::Error::custom(format!("the field \"{name}\" occurs twice")));
     }
+    *slot = Some(map.next_value()?);
+    Ok(())
 }
 
 impl<'de: 'a, 'a> Deserialize<'de> for FileTree<'a> {
@@ -84,9 +91,9 @@ impl<'de> Visitor<'de> for NodeVisitor {
         let mut tree = NodeTree::default();
         while let Some(name) = map.next_key::<String>()? {
             match name.as_str() {
-                "kind" => once(&mut tree.kind, &name, map.next_value()?)?,
-                "note" => once(&mut tree.note, &name, map.next_value()?)?,
-                "inputs" => once(&mut tree.inputs, &name, map.next_value()?)?,
+                "kind" => once(&mut tree.kind, &name, &mut map)?,
+                "note" => once(&mut tree.note, &name, &mut map)?,
+                "inputs" => once(&mut tree.inputs, &name, &mut map)?,
                 _ => tree.unknown.push((name, map.next_value()?)),
             }
         }
@@ -112,9 +119,6 @@ impl<'de, V: Deserialize<'de>> Visitor<'de> for EntriesVisitor<V> {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Entries<'de, V>, A::Error> {
         let mut entries = Vec::new();
         while let Some(name) = map.next_key::<&'de RawValue>()? {
-            if !trimmed(name).starts_with('"') && !trimmed(name).starts_with('r') {
-                return Err(A::Error::custom(format!("{} is not a name in double quotes", trimmed(name))));
-            }
             entries.push((name, map.next_value()?));
         }
         Ok(Entries(entries))

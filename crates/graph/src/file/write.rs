@@ -3,13 +3,17 @@
 use std::fmt::Write as _;
 
 use crate::file::FORMAT_VERSION;
+use crate::file::tree::FileTree;
 use crate::graph::{Graph, Node, Source};
 use crate::literal::{Literal, Stroke, StrokePoint};
 
 /// The graph as the text of a file. Reading it back gives an equal graph, and writing that the same text.
 pub fn to_text(graph: &Graph) -> String {
     let mut out = String::from("(\n");
-    line(&mut out, 1, &format!("version: {FORMAT_VERSION},"));
+    // A version that could not be read stays, or the file would claim to be what it is not.
+    let version = graph.unknown_fields.iter().find(|(name, _)| name == "version");
+    let version = version.map_or_else(|| FORMAT_VERSION.to_string(), |(_, raw)| raw.clone());
+    line(&mut out, 1, &format!("version: {version},"));
     if !graph.notes.is_empty() {
         line(&mut out, 1, &format!("notes: {},", quoted(&graph.notes)));
     }
@@ -24,13 +28,17 @@ pub fn to_text(graph: &Graph) -> String {
         for (name, [x, y]) in placed {
             line(&mut out, 2, &format!("{}: ({}, {}),", quoted(name), number(x), number(y)));
         }
-        for (name, raw) in &graph.unknown_layout {
+        let replaced = |name: &str| graph.find(name).and_then(|id| graph.node(id)?.position()).is_some();
+        for (name, raw) in graph.unknown_layout.iter().filter(|(name, _)| !replaced(name)) {
             line(&mut out, 2, &format!("{}: {raw},", quoted(name)));
         }
         line(&mut out, 1, "},");
     }
     for (name, raw) in &graph.unknown_fields {
-        line(&mut out, 1, &format!("{}: {raw},", identifier(name)));
+        let replaced = name == "version" || (name == "notes" && !graph.notes.is_empty());
+        if !replaced {
+            line(&mut out, 1, &format!("{}: {raw},", identifier(name)));
+        }
     }
     out.push_str(")\n");
     out
@@ -38,7 +46,10 @@ pub fn to_text(graph: &Graph) -> String {
 
 fn write_node(out: &mut String, graph: &Graph, node: &Node) {
     line(out, 2, &format!("{}: (", quoted(node.name())));
-    line(out, 3, &format!("kind: {},", quoted(node.kind_name())));
+    // Without a kind it was missing in the file, or is among the unknown fields because it was no text.
+    if !node.kind_name().is_empty() {
+        line(out, 3, &format!("kind: {},", quoted(node.kind_name())));
+    }
     if !node.note().is_empty() {
         line(out, 3, &format!("note: {},", quoted(node.note())));
     }
@@ -55,7 +66,10 @@ fn write_node(out: &mut String, graph: &Graph, node: &Node) {
         line(out, 3, "},");
     }
     for (name, raw) in &node.unknown_fields {
-        line(out, 3, &format!("{}: {raw},", identifier(name)));
+        let replaced = name == "note" && !node.note().is_empty();
+        if !replaced {
+            line(out, 3, &format!("{}: {raw},", identifier(name)));
+        }
     }
     line(out, 2, "),");
 }
@@ -135,9 +149,11 @@ fn quoted(text: &str) -> String {
 
 /// A field's name; one that is no plain identifier is written raw.
 fn identifier(name: &str) -> String {
-    let plain = name.starts_with(|c: char| c.is_alphabetic() || c == '_')
-        && name.chars().all(|c| c.is_alphanumeric() || c == '_');
-    if plain { name.to_owned() } else { format!("r#{name}") }
+    let ascii = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    // Which other characters may stand plainly is for RON to say.
+    let reads_back = || ron::from_str::<FileTree<'_>>(&format!("({name}: 0)")).is_ok_and(|t| t.unknown.iter().any(|f| f.0 == name));
+    if ascii || reads_back() { name.to_owned() } else { format!("r#{name}") }
 }
 
 /// The shortest text that reads back as the same number.

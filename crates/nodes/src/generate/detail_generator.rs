@@ -95,9 +95,16 @@ pub(crate) fn kind() -> NodeKind {
         };
         let Generated { sections, notes, largest_gap } = match case {
             Case::TwoViews => {
-                let four: &[_; 4] = drawn.as_slice().try_into().map_err(|_| {
-                    format!("two views take four open contours, and {} arrive: pass them through `sort`", drawn.len())
-                }).at(rails)?;
+                let four: &[_; 4] = drawn
+                    .as_slice()
+                    .try_into()
+                    .map_err(|_| {
+                        format!(
+                            "two views take four open contours, and {} arrive: pass them through `sort`",
+                            drawn.len()
+                        )
+                    })
+                    .at(rails)?;
                 two_views(four, &options, &progress).at(rails)?
             }
             Case::BetweenClosed => {

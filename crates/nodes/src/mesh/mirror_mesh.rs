@@ -8,8 +8,7 @@ use crate::view_plane::MirrorPlane;
 use crate::wire;
 
 pub(crate) fn kind() -> NodeKind {
-    let mut node =
-        NodeKind::declare("mirror-mesh", 1, "mesh", "Mirrors a mesh across a plane; normals stay outward.");
+    let mut node = NodeKind::declare("mirror-mesh", 1, "mesh", "Mirrors a mesh across a plane; normals stay outward.");
     let mesh = node.input::<wire::Mesh>("mesh", "Mesh to mirror.");
     let axis = node.choice::<MirrorPlane>("axis", "The axis that is turned around.");
     let offset = node.length("offset", 0.0, -1e4..=1e4, "Place of the mirror along that axis.");
@@ -19,10 +18,8 @@ pub(crate) fn kind() -> NodeKind {
     node.evaluate(move |ports| {
         let (axis, offset) = (ports.choice(axis), ports.value(offset));
         let original = &ports.read(mesh).0;
-        let reflection = DAffine3 {
-            translation: axis.reflect(DVec3::ZERO, offset),
-            ..DAffine3::from_scale(axis.signs())
-        };
+        let reflection =
+            DAffine3 { translation: axis.reflect(DVec3::ZERO, offset), ..DAffine3::from_scale(axis.signs()) };
         let image = transform(original, &reflection).at(mesh)?;
         let result = if ports.value(keep) { join([original, &image]).at(mesh)? } else { image };
         ports.write(mirrored, wire::Mesh(result.named(original.name())));

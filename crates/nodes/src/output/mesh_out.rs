@@ -6,8 +6,7 @@ use maquette_graph::NodeKind;
 use crate::wire;
 
 pub(crate) fn kind() -> NodeKind {
-    let mut node =
-        NodeKind::declare("mesh-out", 1, "output", "A mesh as a result of the graph, named like this node.");
+    let mut node = NodeKind::declare("mesh-out", 1, "output", "A mesh as a result of the graph, named like this node.");
     node.is_result();
     let mesh = node.input::<wire::Mesh>("mesh", "The mesh.");
     let clay = Material::default();

@@ -10,10 +10,8 @@ use crate::wire;
 struct CapChoice(Cap);
 
 impl Choices for CapChoice {
-    const OPTIONS: &'static [(Self, &'static str, &'static str)] = &[
-        (Self(Cap::None), "none", "the end stays open"),
-        (Self(Cap::Flat), "flat", "a flat lid with a hard edge"),
-    ];
+    const OPTIONS: &'static [(Self, &'static str, &'static str)] =
+        &[(Self(Cap::None), "none", "the end stays open"), (Self(Cap::Flat), "flat", "a flat lid with a hard edge")];
 }
 
 #[derive(Clone, Copy)]
@@ -45,7 +43,8 @@ pub(crate) fn kind() -> NodeKind {
         "Skins a mesh of quads through sections, smooth across and along, with normals and UVs.",
     );
     node.reference("thesis chapter 4, Figure 6.11; C2 spline in u");
-    let sections = node.input::<wire::Sections>("sections", "Sections to skin; a section that is a point closes the end.");
+    let sections =
+        node.input::<wire::Sections>("sections", "Sections to skin; a section that is a point closes the end.");
     let rows = node.integer("rows", 2, 1..=64, "Quads from one section to the next.");
     node.soft_range(rows, 1.0..=8.0);
     let columns = node.integer("columns", 1, 1..=64, "Quads from one point of a section to the next.");

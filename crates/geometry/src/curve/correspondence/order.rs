@@ -90,3 +90,16 @@ fn call(rail: &Rail) -> String {
         name => format!("{} \"{name}\"", rail.number),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn middle_does_not_depend_on_how_densely_a_stroke_was_drawn() {
+        let dense = (0..100).map(|i| DVec3::X * (f64::from(i) / 100.0));
+        let points = dense.chain([DVec3::X, DVec3::X * 3.0]).collect();
+        let stroke = Curve::new("stroke", points, false).unwrap();
+        assert!(mid_arc(&stroke).distance(DVec3::X * 1.5) < 1e-12);
+    }
+}

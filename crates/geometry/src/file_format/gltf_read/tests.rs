@@ -57,7 +57,8 @@ fn refusal(path: &str, value: Value) -> String {
 #[test]
 fn what_was_written_comes_back() {
     for file in [gltf_write::glb, gltf_write::gltf] {
-        let scene = Scene { meshes: vec![item("box", cuboid_with_attributes()), item("ball", sphere(24, 12))], curves: vec![] };
+        let scene =
+            Scene { meshes: vec![item("box", cuboid_with_attributes()), item("ball", sphere(24, 12))], curves: vec![] };
         let meshes = read(&file(&scene).unwrap()).unwrap();
         assert_eq!(meshes.iter().map(Mesh::name).collect::<Vec<_>>(), ["box", "ball"]);
 
@@ -105,7 +106,8 @@ fn lists_strips_and_fans_give_their_triangles() {
         let mesh = one(&document);
         let triangles: Vec<Vec<DVec3>> =
             mesh.polygons().map(|p| p.iter().map(|&v| mesh.positions()[v as usize]).collect()).collect();
-        let expected: Vec<Vec<DVec3>> = expected.iter().map(|t| t.iter().map(|&v: &usize| square[v]).collect()).collect();
+        let expected: Vec<Vec<DVec3>> =
+            expected.iter().map(|t| t.iter().map(|&v: &usize| square[v]).collect()).collect();
         assert_eq!(triangles, expected, "mode {mode}");
     }
 }
@@ -191,9 +193,10 @@ fn bytes_stand_for_uvs_where_they_are_normalised() {
     document["bufferViews"][1]["byteLength"] = 12.into();
     document["accessors"][1]["count"] = 12.into();
     document["bufferViews"].as_array_mut().unwrap().push(json!({"buffer": 0, "byteOffset": 60, "byteLength": 8}));
-    document["accessors"].as_array_mut().unwrap().push(
-        json!({"bufferView": 2, "componentType": 5121, "normalized": true, "count": 4, "type": "VEC2"}),
-    );
+    document["accessors"]
+        .as_array_mut()
+        .unwrap()
+        .push(json!({"bufferView": 2, "componentType": 5121, "normalized": true, "count": 4, "type": "VEC2"}));
     document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = 2.into();
     let mesh = one(&document);
     let uvs = mesh.uvs().unwrap();
@@ -209,8 +212,16 @@ fn other_files_compression_and_versions_are_refused_with_a_remedy() {
         "buffer 0 of the glTF lies in another file, \"body.bin\": export as .glb, which holds everything"
     );
     for (path, value, expected) in [
-        ("/accessors/0/sparse", json!({"count": 1, "indices": {"bufferView": 1, "componentType": 5121}, "values": {"bufferView": 0}}), "sparse"),
-        ("/extensionsRequired", json!(["KHR_draco_mesh_compression"]), "KHR_draco_mesh_compression, which is not supported: export without"),
+        (
+            "/accessors/0/sparse",
+            json!({"count": 1, "indices": {"bufferView": 1, "componentType": 5121}, "values": {"bufferView": 0}}),
+            "sparse",
+        ),
+        (
+            "/extensionsRequired",
+            json!(["KHR_draco_mesh_compression"]),
+            "KHR_draco_mesh_compression, which is not supported: export without",
+        ),
         ("/asset/version", "1.0".into(), "version \"1.0\", which is not supported: export as glTF 2.0"),
     ] {
         let message = refusal(path, value);

@@ -21,13 +21,14 @@ fn refusal(text: &str) -> String {
 
 #[test]
 fn a_quad_with_everything_is_written_as_expected() {
-    let mesh = Mesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 0.1, 0.0), -0.0 * DVec3::X + DVec3::Y], [[0, 1, 2, 3]])
-        .unwrap()
-        .with_normals(vec![DVec3::Z; 4])
-        .unwrap()
-        .with_uvs(vec![DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::ZERO])
-        .unwrap()
-        .named("left sleeve");
+    let mesh =
+        Mesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 0.1, 0.0), -0.0 * DVec3::X + DVec3::Y], [[0, 1, 2, 3]])
+            .unwrap()
+            .with_normals(vec![DVec3::Z; 4])
+            .unwrap()
+            .with_uvs(vec![DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::ZERO])
+            .unwrap()
+            .named("left sleeve");
     let version = env!("CARGO_PKG_VERSION");
     assert_eq!(
         text_of(&scene_of(mesh), Some("hero.mtl")),
@@ -92,10 +93,7 @@ fn materials_and_objects_of_one_name_are_told_apart() {
     let library = String::from_utf8(material_library_bytes(&scene).unwrap()).unwrap();
     assert!(library.contains("newmtl clay\nKd 0.8 0.72 0.64\n") && library.contains("newmtl clay-2\n"), "{library}");
     scene.meshes[1].material.roughness = f64::NAN;
-    assert_eq!(
-        material_library_bytes(&scene),
-        Err(WriteError::Material { name: "box".to_owned(), what: "roughness" })
-    );
+    assert_eq!(material_library_bytes(&scene), Err(WriteError::Material { name: "box".to_owned(), what: "roughness" }));
 }
 
 #[test]
@@ -103,10 +101,7 @@ fn what_cannot_be_written_is_refused() {
     assert_eq!(write(&Scene::default(), None), Err(WriteError::NothingToWrite));
     assert_eq!(write(&scene_of(Mesh::default()), None), Err(WriteError::EmptyMesh { name: String::new() }));
     for name in ["", "a\nb.mtl"] {
-        assert_eq!(
-            write(&scene_of(cuboid()), Some(name)),
-            Err(WriteError::LibraryName { name: name.to_owned() })
-        );
+        assert_eq!(write(&scene_of(cuboid()), Some(name)), Err(WriteError::LibraryName { name: name.to_owned() }));
     }
 }
 
@@ -134,7 +129,10 @@ fn objects_are_meshes_and_groups_only_where_there_are_no_objects() {
         let meshes = read(format!("{points}{text}").as_bytes()).unwrap();
         meshes.iter().map(|m| format!("{}:{}:{}", m.name(), m.positions().len(), m.polygon_count())).collect::<Vec<_>>()
     };
-    assert_eq!(names("o left arm\nusemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\no empty\no right\ng hand\nf 2 3 4\n"), ["left arm:4:2", "right:3:1"]);
+    assert_eq!(
+        names("o left arm\nusemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\no empty\no right\ng hand\nf 2 3 4\n"),
+        ["left arm:4:2", "right:3:1"]
+    );
     assert_eq!(names("g one\nf 1 2 3\ng\ng two\nf 1 3 4\n"), ["one:3:1", "two:3:1"]);
 }
 

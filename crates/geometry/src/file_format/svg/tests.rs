@@ -2,7 +2,8 @@ use proptest::prelude::*;
 
 use super::*;
 
-const HEAD: &str = r#"<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" width="100" height="100">"#;
+const HEAD: &str =
+    r#"<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" width="100" height="100">"#;
 
 fn drawing(body: &str) -> Vec<Path2d> {
     read(format!("{HEAD}{body}</svg>").as_bytes(), 0.01).unwrap()
@@ -34,7 +35,9 @@ fn closed_subpaths_do_not_repeat_their_first_point() {
 
 #[test]
 fn subpaths_become_curves_of_their_own() {
-    let paths = drawing(r#"<path id="eye" d="M0 0h9v9zm2 2h3v3zl-1 5 3 2" stroke="red"/><path d="M0 50h9v9"/><path d="M0 60h9v9"/>"#);
+    let paths = drawing(
+        r#"<path id="eye" d="M0 0h9v9zm2 2h3v3zl-1 5 3 2" stroke="red"/><path d="M0 50h9v9"/><path d="M0 60h9v9"/>"#,
+    );
     let found: Vec<_> = paths.iter().map(|p| (p.name.as_str(), p.closed, p.points.len())).collect();
     let expected =
         [("eye 0", true, 3), ("eye 1", true, 3), ("eye 2", false, 3), ("path 0", false, 3), ("path 1", false, 3)];
@@ -92,8 +95,7 @@ fn no_chord_lies_farther_off_than_the_tolerance() {
     let mut counts = Vec::new();
     for tolerance in [3.0, 0.1, 0.001] {
         let paths = read(text.as_bytes(), tolerance).unwrap();
-        for (found, least) in
-            [(deviation(cubic, &paths[0].points), 0.2), (deviation(quadratic, &paths[1].points), 0.2)]
+        for (found, least) in [(deviation(cubic, &paths[0].points), 0.2), (deviation(quadratic, &paths[1].points), 0.2)]
         {
             assert!(found <= tolerance + 1e-5, "{found} for {tolerance}");
             assert!(found >= least * tolerance, "{found} is wastefully fine for {tolerance}");
@@ -200,16 +202,22 @@ fn references_that_multiply_or_chase_themselves_end() {
     }
     assert!(read(format!("{HEAD}{body}</svg>").as_bytes(), 0.1).is_err());
 
-    let chain: String = (0..2000)
-        .map(|k| format!(r##"<g id="b{k}" opacity="0.5"><use xlink:href="#b{}"/></g>"##, k + 1))
-        .collect();
-    let _ = read(format!(r#"{HEAD}{chain}<path id="b2000" d="M0 0h9v9"/></svg>"#).as_bytes(), 0.1);
+    // Each link nests two groups deeper; the longest chain that is read must not exhaust the stack.
+    for links in [100, 300, 340, 341, 500, 510, 2000] {
+        let chain: String = (0..links)
+            .map(|k| format!(r##"<g id="b{k}" opacity="0.5"><use xlink:href="#b{}"/></g>"##, k + 1))
+            .collect();
+        let found = read(format!(r#"{HEAD}{chain}<path id="b{links}" d="M0 0h9v9"/></svg>"#).as_bytes(), 0.1);
+        assert!(if links == 100 { found.is_ok() } else { links < 2000 || found.is_err() }, "{links} links");
+    }
 
-    let circle = r##"<g id="x"><use xlink:href="#y"/></g><g id="y"><use xlink:href="#x"/></g><path d="M0 0h9v9"/>"##;
-    assert_eq!(drawing(circle).len(), 1);
+    let circle = r##"<g id="x"><use xlink:href="#y"/></g><g id="y"><use xlink:href="#x"/></g>"##;
+    assert!(matches!(read(format!("{HEAD}{circle}</svg>").as_bytes(), 0.1), Err(ReadError::Malformed { .. })));
     let laughs = format!(
         r#"<!DOCTYPE svg [<!ENTITY a "aaaaaaaaaa">{}]>{HEAD}<path id="&j;" d="M0 0h9v9"/></svg>"#,
-        ('b'..='j').map(|c| format!("<!ENTITY {c} \"{}\">", format!("&{};", char::from(c as u8 - 1)).repeat(10))).collect::<String>()
+        ('b'..='j')
+            .map(|c| format!("<!ENTITY {c} \"{}\">", format!("&{};", char::from(c as u8 - 1)).repeat(10)))
+            .collect::<String>()
     );
     assert!(matches!(read(laughs.as_bytes(), 0.1), Err(ReadError::Malformed { .. })));
 }

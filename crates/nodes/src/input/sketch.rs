@@ -9,7 +9,7 @@ use crate::view_plane::ViewPlane;
 use crate::wire;
 
 pub(crate) fn kind() -> NodeKind {
-    let mut node = NodeKind::declare("sketch", 1, "sketch", "Strokes drawn in a view plane, as curves in space.");
+    let mut node = NodeKind::declare("sketch", 1, "input", "Strokes drawn in a view plane, as curves in space.");
     node.reference("thesis 5.1, Figure 6.11");
     let strokes = node.strokes("strokes", "The strokes: points in the plane's two coordinates, open or closed, named.");
     let plane = node.choice::<ViewPlane>("plane", "The plane they are drawn in.");

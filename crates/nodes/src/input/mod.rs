@@ -2,4 +2,4 @@
 
 pub(crate) mod import_curves;
 pub(crate) mod import_mesh;
-pub(crate) mod strokes;
+pub(crate) mod sketch;

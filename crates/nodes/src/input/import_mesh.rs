@@ -9,7 +9,7 @@ use crate::source_file;
 use crate::wire;
 
 pub(crate) fn kind() -> NodeKind {
-    let mut node = NodeKind::declare("import-mesh", 1, "sketch", "A mesh from a glTF or OBJ file; quads stay quads.");
+    let mut node = NodeKind::declare("import-mesh", 1, "input", "A mesh from a glTF or OBJ file; quads stay quads.");
     let file = node.file("file", &["glb", "gltf", "obj"], "The file: .glb, .gltf with embedded data, or .obj.");
     let part = node.text("part", "", "Name of the one mesh to take; empty joins all meshes of the file.");
     let scale = node.length("scale", 1.0, 1e-9..=1e9, "Length of one unit of the file; glTF's is a metre.");

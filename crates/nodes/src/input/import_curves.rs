@@ -44,7 +44,7 @@ pub(crate) fn kind() -> NodeKind {
     let mut node = NodeKind::declare(
         "import-curves",
         1,
-        "sketch",
+        "input",
         "Curves of a file: contours or sections as JSON, or the paths of an SVG drawing placed on a view plane.",
     );
     let file = node.file("file", &["json", "svg"], "The file, .json or .svg.");

@@ -1,0 +1,93 @@
+//! The detail generator and the whole vest, beside the figures the thesis gives: 0.09 s a detail, 0.17 s a primitive
+//! (Python in Houdini on a 3.2 GHz Xeon, section 6.5). Run with `cargo bench --bench pipeline`.
+#![allow(missing_docs, reason = "a benchmark has no users")]
+
+use std::hint::black_box;
+use std::path::Path;
+
+use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
+use maquette_graph::{Evaluator, EvaluatorOptions, Graph, Literal, NodeId, Request, Source, file};
+
+struct Saved {
+    catalogue: maquette_graph::Catalogue,
+    graph: Graph,
+}
+
+fn load(name: &str) -> Saved {
+    let catalogue = maquette_nodes::catalogue().expect("the catalogue is sound");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("graphs/{name}.ron"));
+    let bytes = std::fs::read(path).expect("the graph is there");
+    let graph = file::from_bytes(&catalogue, &bytes).expect("the graph is readable").graph;
+    Saved { catalogue, graph }
+}
+
+impl Saved {
+    fn node(&self, name: &str) -> NodeId {
+        self.graph.find(name).expect("the node is there")
+    }
+
+    fn run(&self, evaluator: &mut Evaluator, targets: &[NodeId]) {
+        let base = Path::new(env!("CARGO_MANIFEST_DIR")).join("graphs");
+        let evaluation = evaluator.evaluate(&self.catalogue, &self.graph, &Request::nodes(targets).base(base));
+        assert!(evaluation.is_complete());
+        black_box(evaluation);
+    }
+}
+
+fn evaluator() -> Evaluator {
+    // One thread: the figures are for one core.
+    Evaluator::new(&EvaluatorOptions { threads: 1, ..Default::default() })
+}
+
+fn graphs(c: &mut Criterion) {
+    for name in ["vest", "head", "neck", "leg"] {
+        let saved = load(name);
+        let results = saved.graph.results();
+        c.bench_function(&format!("{name}, cold"), |b| {
+            b.iter_batched_ref(evaluator, |evaluator| saved.run(evaluator, &results), BatchSize::SmallInput);
+        });
+    }
+}
+
+/// Alternates a parameter through values never seen before, so that the memo can't answer.
+fn changing(c: &mut Criterion, what: &str, mut saved: Saved, target: &str, change: impl Fn(&mut Saved, f64)) {
+    let targets = [saved.node(target)];
+    let mut evaluator = evaluator();
+    saved.run(&mut evaluator, &targets);
+    let mut step = 0.0;
+    c.bench_function(what, |b| {
+        b.iter(|| {
+            step += 1e-9;
+            change(&mut saved, step);
+            saved.run(&mut evaluator, &targets);
+        });
+    });
+}
+
+fn vest_changes(c: &mut Criterion) {
+    let strokes = |saved: &Saved, node: &str| match saved.graph.node(saved.node(node)).and_then(|n| n.source("strokes")) {
+        Some(Source::Literal { literal: Literal::Strokes(strokes), .. }) => strokes.clone(),
+        _ => Vec::new(),
+    };
+    changing(c, "vest, one rail moved", load("vest"), "vest", |saved, step| {
+        let node = saved.node("front rail");
+        let mut moved = strokes(saved, "front rail");
+        moved[0].points[4].x += step;
+        saved.graph.set(node, "strokes", Literal::Strokes(moved)).expect("strokes fit");
+    });
+    changing(c, "vest, one parameter of the detail generator", load("vest"), "vest", |saved, step| {
+        let node = saved.node("body");
+        saved.graph.set(node, "k_s", Literal::Number(1.4 + step)).expect("in range");
+    });
+    changing(c, "detail generator alone (the vest's, published 90 ms)", load("vest"), "body", |saved, step| {
+        let node = saved.node("body");
+        saved.graph.set(node, "k_s", Literal::Number(1.4 + step)).expect("in range");
+    });
+    changing(c, "detail generator alone (the head's, published 90 ms)", load("head"), "sections", |saved, step| {
+        let node = saved.node("sections");
+        saved.graph.set(node, "k_s", Literal::Number(1.4 + step)).expect("in range");
+    });
+}
+
+criterion_group!(benches, graphs, vest_changes);
+criterion_main!(benches);

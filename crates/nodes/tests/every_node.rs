@@ -1,0 +1,307 @@
+//! What must hold for every node kind, without a line of test code per node.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use glam::{DVec2, DVec3};
+use maquette_geometry::curve::Curve;
+use maquette_geometry::mesh::Mesh;
+use maquette_geometry::sections::Sections;
+use maquette_graph::{
+    Catalogue, Evaluation, Evaluator, Graph, Literal, LiteralKind, NodeId, NodeKind, OutcomeState, Request, Stroke,
+    StrokePoint, Wire, WireType,
+};
+use maquette_nodes::wire;
+
+fn circle(name: &str, radius: f64, height: f64) -> Curve {
+    let point = |k: u32| {
+        let angle = f64::from(k) * std::f64::consts::TAU / 48.0;
+        DVec3::new(radius * angle.cos(), height, -radius * angle.sin())
+    };
+    Curve::new(name, (0..48).map(point).collect(), true).unwrap()
+}
+
+fn rail(name: &str, angle: f64) -> Curve {
+    let point = |k: u32| {
+        let t = f64::from(k) / 20.0;
+        let radius = 1.0 + t * (1.0 - t);
+        DVec3::new(radius * angle.cos(), 2.0 * t, -radius * angle.sin())
+    };
+    Curve::new(name, (0..=20).map(point).collect(), false).unwrap()
+}
+
+fn four_rails() -> Vec<Curve> {
+    ["left", "back", "right", "front"]
+        .iter()
+        .zip([0.0, 90.0, 180.0, 270.0])
+        .map(|(n, a)| rail(n, f64::to_radians(a)))
+        .collect()
+}
+
+fn tube() -> Sections {
+    let rows = (0..12).map(|k| circle("", 1.0, f64::from(k) / 4.0).points().to_vec()).collect();
+    Sections::new(rows, true, vec![0, 12, 24, 36]).unwrap()
+}
+
+fn square() -> Mesh {
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::ONE, DVec3::Y].to_vec();
+    let uvs = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y].to_vec();
+    Mesh::new(corners, [[0_u32, 1, 2, 3]]).unwrap().with_uvs(uvs).unwrap()
+}
+
+/// A kind that gives a fixed value, for linking to inputs that take no literal.
+fn constant<T: Wire + Clone>(name: &str, value: T) -> NodeKind {
+    let mut node = NodeKind::declare(name, 1, "test", "A fixed value.");
+    let out = node.output::<T>("out", "The value.");
+    node.evaluate(move |ports| {
+        ports.write(out, value.clone());
+        Ok(())
+    });
+    node
+}
+
+fn test_catalogue() -> Catalogue {
+    let mut catalogue = maquette_nodes::catalogue().unwrap();
+    let tiny = Curve::new("tiny", vec![DVec3::ZERO, DVec3::splat(1e-300)], false).unwrap();
+    let huge = Curve::new("huge", vec![DVec3::ZERO, DVec3::splat(1e300), DVec3::X], true).unwrap();
+    let flat = Sections::new(vec![vec![DVec3::ZERO; 8]; 3], true, vec![]).unwrap();
+    let nasty_curves: Vec<Vec<Curve>> = vec![
+        vec![],
+        vec![tiny.clone()],
+        vec![huge.clone()],
+        vec![tiny.clone(), huge.clone(), tiny.clone(), huge.clone()],
+        vec![rail("same", 0.0); 4],
+        vec![circle("same", 1.0, 0.0); 3],
+        [four_rails(), vec![circle("a", 1.0, 0.0), circle("b", 1e-12, 2.0)]].concat(),
+    ];
+    for (index, curves) in nasty_curves.into_iter().enumerate() {
+        catalogue.register(constant(&format!("nasty-curves-{index}"), wire::Curves(curves))).unwrap();
+    }
+    for (index, curve) in [tiny, huge, rail("open", 1.0), circle("far", 1.0, 1e9)].into_iter().enumerate() {
+        catalogue.register(constant(&format!("nasty-curve-{index}"), wire::Curve(curve))).unwrap();
+    }
+    let open = Sections::new(vec![vec![DVec3::ZERO, DVec3::X]; 2], false, vec![]).unwrap();
+    let huge = Sections::new(vec![vec![DVec3::splat(1e200), DVec3::X, DVec3::Y]; 2], true, vec![]).unwrap();
+    for (index, sections) in [flat, open, huge].into_iter().enumerate() {
+        catalogue.register(constant(&format!("nasty-sections-{index}"), wire::Sections(sections))).unwrap();
+    }
+    catalogue.register(constant("nasty-mesh-0", wire::Mesh(Mesh::default()))).unwrap();
+    catalogue.register(constant("good-curves", wire::Curves(four_rails()))).unwrap();
+    catalogue.register(constant("good-curve", wire::Curve(circle("ring", 1.2, 1.25)))).unwrap();
+    catalogue.register(constant("good-sections", wire::Sections(tube()))).unwrap();
+    catalogue.register(constant("good-mesh", wire::Mesh(square()))).unwrap();
+    catalogue
+}
+
+/// The constants that give this type, good or nasty.
+fn constants(catalogue: &Catalogue, wire: WireType, prefix: &str) -> Vec<String> {
+    let start = format!("{prefix}-{wire}");
+    let name = |kind: &NodeKind| kind.name().to_owned();
+    catalogue
+        .kinds()
+        .filter(|kind| kind.name().starts_with(&start) && kind.outputs()[0].wire == wire)
+        .map(|kind| name(kind))
+        .collect()
+}
+
+fn shipped() -> Vec<String> {
+    maquette_nodes::catalogue().unwrap().kinds().map(|kind| kind.name().to_owned()).collect()
+}
+
+/// A graph with one node of the kind under test, everything it needs linked or set.
+fn sample(catalogue: &Catalogue, kind: &str, folder: &Path) -> (Graph, NodeId) {
+    let mut graph = Graph::new();
+    let node = graph.add(catalogue, kind, "tested").unwrap();
+    let declared = catalogue.kind(kind).unwrap().clone();
+    for input in declared.inputs() {
+        match LiteralKind::of_wire(input.wire) {
+            None if !input.optional || kind.starts_with("join") => {
+                let name = constants(catalogue, input.wire, "good").first().unwrap().clone();
+                let source = graph.find(&name).unwrap_or_else(|| graph.add(catalogue, &name, &name).unwrap());
+                graph.connect(catalogue, source, "out", node, &input.name).unwrap();
+            }
+            Some(LiteralKind::Strokes) => graph.set(node, &input.name, strokes()).unwrap(),
+            Some(LiteralKind::File) => {
+                let file = match input.extensions.iter().any(|e| e == "json") {
+                    true => ("curves.json", br#"{"contours":[{"name":"a","points":[[0,0,0],[0,1,0]]}]}"#.to_vec()),
+                    false => ("mesh.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_vec()),
+                };
+                std::fs::write(folder.join(file.0), file.1).unwrap();
+                graph.set(node, &input.name, Literal::File(file.0.to_owned())).unwrap();
+            }
+            _ => {}
+        }
+    }
+    (graph, node)
+}
+
+fn strokes() -> Literal {
+    let points = (0..5).map(|i| StrokePoint { x: f64::from(i), y: f64::from(i * i), pressure: None }).collect();
+    Literal::Strokes(vec![Stroke { name: "drawn".to_owned(), closed: false, points }])
+}
+
+fn evaluate(catalogue: &Catalogue, graph: &Graph, node: NodeId, folder: &Path) -> Evaluation {
+    Evaluator::default().evaluate(catalogue, graph, &Request::nodes(&[node]).base(folder))
+}
+
+#[test]
+fn every_file_is_a_registered_kind_of_its_name() {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = BTreeSet::new();
+    for folder in std::fs::read_dir(source).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()) {
+        for file in std::fs::read_dir(folder).unwrap() {
+            let stem = file.unwrap().path().file_stem().unwrap().to_string_lossy().replace('_', "-");
+            if stem != "mod" {
+                files.insert(stem);
+            }
+        }
+    }
+    assert_eq!(files, shipped().into_iter().collect(), "files in the folders of src/, and kinds registered in lib.rs");
+}
+
+#[test]
+fn every_kind_and_port_is_described_and_named_in_kebab_case() {
+    let kebab = |name: &str| {
+        let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
+        // The two stiffnesses are called as in every publication on the subject.
+        ["k_b", "k_s"].contains(&name) || (!name.is_empty() && name.chars().all(allowed))
+    };
+    let sentence = |text: &str| text.len() > 5 && text.ends_with(['.', '"']) && !text.starts_with(' ');
+    for kind in maquette_nodes::catalogue().unwrap().kinds() {
+        assert!(kebab(kind.name()) && sentence(kind.description()), "{}", kind.name());
+        assert!(!kind.category().is_empty() && !kind.outputs().is_empty(), "{}", kind.name());
+        for input in kind.inputs() {
+            assert!(kebab(&input.name) && sentence(&input.description), "{}.{}", kind.name(), input.name);
+            let number = [WireType::of::<f64>(), WireType::of::<i64>()].contains(&input.wire);
+            assert_eq!(number, input.range.is_some(), "{}.{}: numbers have a range", kind.name(), input.name);
+            for option in &input.options {
+                assert!(kebab(&option.name) && !option.description.is_empty(), "{}.{}", kind.name(), input.name);
+            }
+        }
+        for output in kind.outputs() {
+            assert!(kebab(&output.name) && sentence(&output.description), "{}.{}", kind.name(), output.name);
+        }
+    }
+}
+
+#[test]
+fn every_kind_evaluates_with_its_defaults_and_gives_the_same_hashes_twice() {
+    let catalogue = test_catalogue();
+    for kind in shipped() {
+        let folder = tempfile::tempdir().unwrap();
+        let (graph, node) = sample(&catalogue, &kind, folder.path());
+        let hashes = || {
+            let evaluation = evaluate(&catalogue, &graph, node, folder.path());
+            let failures: Vec<_> = evaluation.failures().map(|(o, f)| format!("{}: {f}", o.name)).collect();
+            assert!(failures.is_empty(), "{kind}: {failures:?}");
+            evaluation.values(node).unwrap().iter().map(|value| value.hash()).collect::<Vec<_>>()
+        };
+        assert_eq!(hashes(), hashes(), "{kind}");
+    }
+}
+
+#[test]
+fn no_kind_breaks_down_on_malformed_input() {
+    let catalogue = test_catalogue();
+    for kind in shipped() {
+        let folder = tempfile::tempdir().unwrap();
+        let declared = catalogue.kind(&kind).unwrap().clone();
+        for input in declared.inputs() {
+            for (what, spoil) in spoilers(&catalogue, input) {
+                let (mut graph, node) = sample(&catalogue, &kind, folder.path());
+                spoil(&catalogue, &mut graph, node, folder.path());
+                let evaluation = evaluate(&catalogue, &graph, node, folder.path());
+                let outcome = evaluation.outcome(node).unwrap();
+                if let OutcomeState::Failed(failure) = &outcome.state {
+                    let place = format!("{kind}.{} with {what}", input.name);
+                    assert!(!failure.message.contains("broke down"), "{place}: {failure}");
+                    assert!(failure.message.len() > 10, "{place}: {failure}");
+                }
+            }
+        }
+    }
+}
+
+type Spoil = Box<dyn Fn(&Catalogue, &mut Graph, NodeId, &Path)>;
+
+/// Ways to put something malformed at an input, each with a name.
+fn spoilers(catalogue: &Catalogue, input: &maquette_graph::InputSpec) -> Vec<(String, Spoil)> {
+    let name = input.name.clone();
+    let literal = |literal: Literal| -> (String, Spoil) {
+        let name = name.clone();
+        let what = format!("{literal:?}").chars().take(80).collect();
+        // What the graph itself refuses can't reach the node.
+        (what, Box::new(move |_, graph, node, _| drop(graph.set(node, &name, literal.clone()))))
+    };
+    let range = input.range.map(|r| [r.min, r.max]).unwrap_or_default();
+    match LiteralKind::of_wire(input.wire) {
+        Some(LiteralKind::Number) => range.map(Literal::Number).map(literal).into(),
+        #[expect(clippy::cast_possible_truncation, reason = "the ranges of integers are integers")]
+        Some(LiteralKind::Integer) => range.map(|r| literal(Literal::Integer(r as i64))).into(),
+        Some(LiteralKind::Boolean) => [true, false].map(|b| literal(Literal::Boolean(b))).into(),
+        Some(LiteralKind::Text) => {
+            let long = "x,".repeat(10_000);
+            ["", " ", "-1", "99999999999999999999", "0", ",,,", "left,left", "\u{0}", "é", &long]
+                .map(|text| literal(Literal::Text(text.to_owned())))
+                .into()
+        }
+        Some(LiteralKind::Choice) => {
+            input.options.iter().map(|o| literal(Literal::Choice(o.name.clone()))).collect()
+        }
+        Some(LiteralKind::Vector) => {
+            [[0.0; 3], [1e300; 3], [-1.0, 1e-300, 1.0]].map(|v| literal(Literal::Vector(v))).into()
+        }
+        Some(LiteralKind::Colour) => [[-1.0; 4], [1e300; 4]].map(|c| literal(Literal::Colour(c))).into(),
+        Some(LiteralKind::Strokes) => {
+            let point = |x| StrokePoint { x, y: x, pressure: Some(0.5) };
+            let stroke = |closed, points| Stroke { name: String::new(), closed, points };
+            [
+                vec![],
+                vec![stroke(false, vec![])],
+                vec![stroke(true, vec![point(0.0), point(1.0)])],
+                vec![stroke(false, vec![point(1.0); 5])],
+                vec![stroke(false, vec![point(1e300), point(-1e300)])],
+            ]
+            .map(|strokes| literal(Literal::Strokes(strokes)))
+            .into()
+        }
+        Some(LiteralKind::File) => {
+            let contents: [(&str, &[u8]); 8] = [
+                ("empty.json", b""),
+                ("cut.json", b"{\"contours\":[{\"points\":[[0,0"),
+                ("none.json", b"{\"contours\":[]}"),
+                ("bad.svg", b"<svg"),
+                ("bad.glb", b"glTF\x02\0\0\0\xff\xff\xff\xff"),
+                ("bad.gltf", b"{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":7}}]}]}"),
+                ("bad.obj", b"v 0 0 0\nf 1 2 9\n"),
+                ("wrong.txt", b"hello"),
+            ];
+            let mut ways = vec![literal(Literal::File(String::new())), literal(Literal::File("gone.json".to_owned()))];
+            for (file, bytes) in contents {
+                let name = name.clone();
+                ways.push((
+                    file.to_owned(),
+                    Box::new(move |_, graph, node, folder| {
+                        std::fs::write(folder.join(file), bytes).unwrap();
+                        graph.set(node, &name, Literal::File(file.to_owned())).unwrap();
+                    }),
+                ));
+            }
+            ways
+        }
+        None => constants(catalogue, input.wire, "nasty")
+            .into_iter()
+            .map(|constant| -> (String, Spoil) {
+                let name = name.clone();
+                let what = constant.clone();
+                (
+                    what,
+                    Box::new(move |catalogue, graph, node, _| {
+                        let source = graph.add(catalogue, &constant, "nasty").unwrap();
+                        graph.connect(catalogue, source, "out", node, &name).unwrap();
+                    }),
+                )
+            })
+            .collect(),
+    }
+}

@@ -1,0 +1,95 @@
+//! What re-runs when something changes in the vest, and that results do not depend on runs or threads.
+
+mod graphs;
+
+use graphs::Saved;
+use maquette_graph::{EventLog, Evaluator, EvaluatorOptions, Literal, Source};
+
+fn ran(saved: &Saved, evaluator: &mut Evaluator) -> Vec<String> {
+    let log = EventLog::default();
+    let request = Saved::request(&saved.graph.results()).events(&log);
+    assert!(evaluator.evaluate(&saved.catalogue, &saved.graph, &request).is_complete());
+    let mut names = log.take_ran();
+    names.sort();
+    names
+}
+
+fn moved_first_point(saved: &Saved, node: &str) -> Literal {
+    let source = saved.graph.node(saved.node(node)).unwrap().source("strokes").cloned();
+    let Some(Source::Literal { literal: Literal::Strokes(mut strokes), .. }) = source else { panic!("no strokes") };
+    // A middle point: the ends must stay on the hem and the neckline.
+    strokes[0].points[4].x += 0.004;
+    Literal::Strokes(strokes)
+}
+
+#[test]
+fn a_changed_parameter_reruns_its_node_and_what_depends_on_it() {
+    let mut saved = Saved::load("vest");
+    let mut evaluator = Evaluator::default();
+    let everything = ran(&saved, &mut evaluator).len();
+    assert_eq!(everything, saved.graph.nodes().len());
+    assert_eq!(ran(&saved, &mut evaluator), Vec::<String>::new(), "nothing changed");
+
+    let surface = saved.node("surface");
+    saved.graph.set(surface, "rows", Literal::Integer(3)).unwrap();
+    assert_eq!(ran(&saved, &mut evaluator), ["surface", "vest"]);
+
+    let reach = saved.node("shaped");
+    saved.graph.set(reach, "before", Literal::Number(0.12)).unwrap();
+    assert_eq!(ran(&saved, &mut evaluator), ["shaped", "surface", "vest"]);
+
+    let strokes = moved_first_point(&saved, "front rail");
+    let rail = saved.node("front rail");
+    saved.graph.set(rail, "strokes", strokes).unwrap();
+    let behind = [
+        "all curves", "body", "both sides", "drawn curves", "even curves", "front rail", "left rails", "shaped",
+        "sketch lines", "sorted", "surface", "vest",
+    ];
+    assert_eq!(ran(&saved, &mut evaluator), behind);
+}
+
+#[test]
+fn an_equal_result_stops_the_wave_and_undo_runs_nothing() {
+    let mut saved = Saved::load("vest");
+    let mut evaluator = Evaluator::default();
+    ran(&saved, &mut evaluator);
+
+    // 400 and 500 are both beyond the vest, so the range is clipped to it and the sections come out equal.
+    let shaped = saved.node("shaped");
+    saved.graph.set(shaped, "before", Literal::Number(400.0)).unwrap();
+    ran(&saved, &mut evaluator);
+    saved.graph.set(shaped, "before", Literal::Number(500.0)).unwrap();
+    assert_eq!(ran(&saved, &mut evaluator), ["shaped"], "its sections are equal, so the surface is a hit");
+
+    saved.graph.set(shaped, "before", Literal::Number(400.0)).unwrap();
+    assert_eq!(ran(&saved, &mut evaluator), Vec::<String>::new(), "undo");
+}
+
+#[test]
+fn renaming_moving_and_remarking_rerun_nothing() {
+    let mut saved = Saved::load("vest");
+    let mut evaluator = Evaluator::default();
+    ran(&saved, &mut evaluator);
+    let body = saved.node("body");
+    saved.graph.rename(body, "torso").unwrap();
+    saved.graph.set_position(body, Some([10.0, 20.0])).unwrap();
+    saved.graph.set_note(body, "the heart of it").unwrap();
+    assert_eq!(ran(&saved, &mut evaluator), Vec::<String>::new());
+}
+
+#[test]
+fn results_are_the_same_for_every_run_and_any_number_of_threads() {
+    for name in ["vest", "head", "neck", "leg"] {
+        let saved = Saved::load(name);
+        let hashes = |threads| {
+            let mut evaluator = Evaluator::new(&EvaluatorOptions { threads, ..Default::default() });
+            let results = saved.graph.results();
+            let evaluation = evaluator.evaluate(&saved.catalogue, &saved.graph, &Saved::request(&results));
+            results.iter().flat_map(|id| evaluation.values(*id).unwrap()).map(|v| v.hash()).collect::<Vec<_>>()
+        };
+        let once = hashes(1);
+        for threads in [1, 2, 8] {
+            assert_eq!(hashes(threads), once, "{name} with {threads} threads");
+        }
+    }
+}
