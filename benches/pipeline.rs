@@ -65,7 +65,8 @@ fn changing(c: &mut Criterion, what: &str, mut saved: Saved, target: &str, chang
 }
 
 fn vest_changes(c: &mut Criterion) {
-    let strokes = |saved: &Saved, node: &str| match saved.graph.node(saved.node(node)).and_then(|n| n.source("strokes")) {
+    let strokes = |saved: &Saved, node: &str| match saved.graph.node(saved.node(node)).and_then(|n| n.source("strokes"))
+    {
         Some(Source::Literal { literal: Literal::Strokes(strokes), .. }) => strokes.clone(),
         _ => Vec::new(),
     };

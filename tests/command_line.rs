@@ -165,7 +165,10 @@ fn wrong_type() {
          \"m\": (kind: \"mesh-out\", inputs: { \"mesh\": Link(\"s.curves\") }),",
     ));
     assert_eq!(code, 2);
-    assert!(said.contains("g.ron:5:") && said.contains("\"s.curves\" gives curves, but \"m.mesh\" takes mesh"), "{said}");
+    assert!(
+        said.contains("g.ron:5:") && said.contains("\"s.curves\" gives curves, but \"m.mesh\" takes mesh"),
+        "{said}"
+    );
 }
 
 #[test]
@@ -175,7 +178,10 @@ fn missing_file() {
          \"o\": (kind: \"curves-out\", inputs: { \"curves\": Link(\"i.curves\") }),",
     ));
     assert_eq!(code, 1);
-    assert!(said.contains("node \"i\", input \"file\": error: the file") && said.contains("gone.json does not exist"), "{said}");
+    assert!(
+        said.contains("node \"i\", input \"file\": error: the file") && said.contains("gone.json does not exist"),
+        "{said}"
+    );
     assert!(said.contains("node \"o\": error: not made, because \"i\" failed"), "{said}");
 }
 
@@ -201,7 +207,10 @@ fn truncated() {
 #[test]
 fn not_utf8() {
     let (code, said) = wrong(b"(\n  version: 1, \xff");
-    assert_eq!((code, said.as_str()), (2, "g.ron:2:15: error: the file is not UTF-8 text; save it as UTF-8, or restore it from a backup\n"));
+    assert_eq!(
+        (code, said.as_str()),
+        (2, "g.ron:2:15: error: the file is not UTF-8 text; save it as UTF-8, or restore it from a backup\n")
+    );
 }
 
 #[test]

@@ -3,7 +3,7 @@
 mod graphs;
 
 use graphs::Saved;
-use maquette_graph::{EventLog, Evaluator, EvaluatorOptions, Literal, Source};
+use maquette_graph::{Evaluator, EvaluatorOptions, EventLog, Literal, Source};
 
 fn ran(saved: &Saved, evaluator: &mut Evaluator) -> Vec<String> {
     let log = EventLog::default();
@@ -42,8 +42,18 @@ fn a_changed_parameter_reruns_its_node_and_what_depends_on_it() {
     let rail = saved.node("front rail");
     saved.graph.set(rail, "strokes", strokes).unwrap();
     let behind = [
-        "all curves", "body", "both sides", "drawn curves", "even curves", "front rail", "left rails", "shaped",
-        "sketch lines", "sorted", "surface", "vest",
+        "all curves",
+        "body",
+        "both sides",
+        "drawn curves",
+        "even curves",
+        "front rail",
+        "left rails",
+        "shaped",
+        "sketch lines",
+        "sorted",
+        "surface",
+        "vest",
     ];
     assert_eq!(ran(&saved, &mut evaluator), behind);
 }

@@ -53,11 +53,9 @@ fn assert_fair(name: &str, mesh: &Mesh, closed: bool, fold: f64) {
 
 /// How far the outline of the surface, seen along `depth`, stands out from the silhouette between two contours, metres.
 fn overshoot(mesh: &Mesh, contours: [&Curve; 2], flat: impl Fn(DVec3) -> DVec2) -> f64 {
-    let outline: Vec<DVec2> = contours[0].points().iter().chain(contours[1].points().iter().rev()).map(|p| flat(*p)).collect();
-    let drawn: Vec<Curve> = contours
-        .iter()
-        .map(|c| c.map(|p| flat(p).extend(0.0)).unwrap())
-        .collect();
+    let outline: Vec<DVec2> =
+        contours[0].points().iter().chain(contours[1].points().iter().rev()).map(|p| flat(*p)).collect();
+    let drawn: Vec<Curve> = contours.iter().map(|c| c.map(|p| flat(p).extend(0.0)).unwrap()).collect();
     let inside = |p: DVec2| {
         let crossings = (0..outline.len()).filter(|&i| {
             let (a, b) = (outline[i], outline[(i + 1) % outline.len()]);

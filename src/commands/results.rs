@@ -14,7 +14,7 @@ pub(super) fn scene(evaluation: &Evaluation, targets: &[NodeId]) -> Scene {
         for value in values {
             if let Some(result) = value.get::<wire::MeshResult>() {
                 let material = Material { name: name.clone(), ..result.material.clone() };
-                let mesh: Mesh = result.mesh.clone().named(name.clone());
+                let mesh: Mesh = (*result.mesh).clone().named(name.clone());
                 scene.meshes.push(MeshItem { name: name.clone(), mesh, material });
             } else if let Some(result) = value.get::<wire::CurvesResult>() {
                 scene.curves.push(CurveItem {

@@ -17,9 +17,9 @@ const GRID_OPACITY: [f32; 3] = [0.075, 0.20, 0.42];
 /// Pixels that the fine lines of the grid are apart at least.
 const GRID_SPACING: f64 = 8.0;
 /// Texels of the shadow on the floor a side.
-const FLOOR_SIDE: usize = 144;
+const FLOOR_SIDE: usize = 128;
 /// Half the side of the floor, in radii of the subject.
-const FLOOR_REACH: f64 = 2.2;
+const FLOOR_REACH: f64 = 2.1;
 
 /// Everything behind the subject.
 pub(super) struct Backdrop<'a> {

@@ -18,6 +18,10 @@ use super::tile::{Bins, PixelRect, TILE};
 const SAME_NORMAL: f32 = 0.9;
 /// In subject units.
 const SAME_PLACE: f32 = 0.03;
+/// Pixels a side of a block in which one surface asks for shadows only once; they are softer than that.
+const BLOCK: usize = 2;
+/// Least cosine between normals for that.
+const SAME_SHADOW: f32 = 0.97;
 
 /// The bytes of a picture, row by row.
 pub(super) fn pixels(
@@ -43,11 +47,12 @@ pub(super) fn pixels(
     let strokes = &*strokes;
     let tone = ToneCurve::new();
     let mut rgb = vec![0; width * height * 3];
-    let tools = || (TileSamples::new(), Ink::new());
-    rgb.par_chunks_mut(width * TILE * 3).enumerate().for_each_init(tools, |(samples, ink), (row, band)| {
+    let tools = || (TileSamples::new(), Ink::new(), Shadows::new());
+    rgb.par_chunks_mut(width * TILE * 3).enumerate().for_each_init(tools, |(samples, ink, shadows), (row, band)| {
         let (top, rows) = (row * TILE, band.len() / (width * 3));
         for column in 0..width.div_ceil(TILE) {
             let left = column * TILE;
+            shadows.0.fill(None);
             samples.begin(PixelRect { left, top, right: width.min(left + TILE), bottom: top + rows });
             for &index in bins.of(row, column) {
                 let face = &faces[index as usize];
@@ -56,7 +61,7 @@ pub(super) fn pixels(
             let rect = samples.rect;
             for y in rect.top..rect.bottom {
                 for x in rect.left..rect.right {
-                    ink.colours[(y - top) * TILE + x - left] = painter.colour(samples, x, y);
+                    ink.colours[(y - top) * TILE + x - left] = painter.colour(samples, shadows, x, y);
                 }
             }
             strokes.draw(samples, [row, column], &faces, camera, ink);
@@ -92,7 +97,7 @@ struct Group {
 
 impl Painter<'_> {
     /// Linear colour of a pixel before lines.
-    fn colour(&self, samples: &TileSamples, x: usize, y: usize) -> Vec3 {
+    fn colour(&self, samples: &TileSamples, shadows: &mut Shadows, x: usize, y: usize) -> Vec3 {
         let seen = samples.seen(x, y);
         let corner = DVec2::new(x as f64, y as f64);
         let mut groups: Vec<Group> = Vec::new();
@@ -118,10 +123,11 @@ impl Painter<'_> {
                 join(&mut groups, self.sample(face, corner + at / count, count as f32));
             }
         }
+        let block = shadows.block(x - samples.rect.left, y - samples.rect.top);
         let mut sum = Vec3::ZERO;
         for group in &groups {
             // Each surface is tone-mapped only after mixing; bright rims would eat thin dark parts otherwise.
-            sum += self.shade(group).min(Vec3::splat(1.5)) * group.count;
+            sum += self.shade(group, block).min(Vec3::splat(1.5)) * group.count;
         }
         if empty > 0.0 {
             sum += self.backdrop.colour(x, y) * empty;
@@ -141,17 +147,52 @@ impl Painter<'_> {
         }
     }
 
-    fn shade(&self, group: &Group) -> Vec3 {
+    fn shade(&self, group: &Group, block: &mut Option<Shadow>) -> Vec3 {
         let place = group.place / group.count;
+        let outside = group.normal.normalize_or(Vec3::Y);
+        let normal = if group.back { -outside } else { outside };
+        let known = block.as_ref().filter(|shadow| shadow.holds_for(group.model, place, normal));
+        let reached = known.map(|shadow| shadow.reached).unwrap_or_else(|| {
+            let reached = [self.studio.sky_visibility(place, normal), self.studio.key_visibility(place, normal)];
+            *block = Some(Shadow { model: group.model, place, normal, reached });
+            reached
+        });
         let bounds = &self.subject.bounds;
         let world = bounds.centre + place.as_dvec3() * bounds.radius;
-        let fragment = Fragment {
-            place,
-            normal: group.normal.normalize_or(Vec3::Y),
-            towards_eye: self.camera.towards_eye(world).as_vec3(),
-            back: group.back,
-        };
+        let towards_eye = self.camera.towards_eye(world).as_vec3();
+        let fragment = Fragment { normal, towards_eye, back: group.back, reached };
         self.subject.models[group.model as usize].surface.shade(self.studio, &fragment)
+    }
+}
+
+/// What light reaches a point, kept for its neighbours.
+#[derive(Clone)]
+struct Shadow {
+    model: u32,
+    place: Vec3,
+    normal: Vec3,
+    /// See [`Fragment::reached`].
+    reached: [f32; 2],
+}
+
+impl Shadow {
+    fn holds_for(&self, model: u32, place: Vec3, normal: Vec3) -> bool {
+        self.model == model
+            && self.normal.dot(normal) >= SAME_SHADOW
+            && self.place.distance_squared(place) < SAME_PLACE * SAME_PLACE
+    }
+}
+
+/// The last answer in each block of a tile.
+struct Shadows(Vec<Option<Shadow>>);
+
+impl Shadows {
+    fn new() -> Self {
+        Self(vec![None; TILE.div_ceil(BLOCK).pow(2)])
+    }
+
+    fn block(&mut self, x: usize, y: usize) -> &mut Option<Shadow> {
+        &mut self.0[y / BLOCK * TILE.div_ceil(BLOCK) + x / BLOCK]
     }
 }
 

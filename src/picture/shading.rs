@@ -28,14 +28,14 @@ pub(super) struct Surface {
 /// A point of a surface, as it is seen.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fragment {
-    /// Where, in the subject's units.
-    pub place: Vec3,
-    /// Unit normal on the side of the polygon's outside.
+    /// Unit normal on the side of the surface that is seen.
     pub normal: Vec3,
     /// Unit vector to the viewer.
     pub towards_eye: Vec3,
     /// Whether it is seen from inside.
     pub back: bool,
+    /// Shares of the sky's and of the key light that reach it, 0 to 1.
+    pub reached: [f32; 2],
 }
 
 impl Surface {
@@ -58,15 +58,14 @@ impl Surface {
 
     /// Light that leaves a point towards the viewer, linear; may exceed 1.
     pub fn shade(&self, studio: &Studio, fragment: &Fragment) -> Vec3 {
-        let normal = if fragment.back { -fragment.normal } else { fragment.normal };
+        let normal = fragment.normal;
         let base = match (fragment.back, self.double_sided) {
             (false, _) => self.colour,
             (true, true) => self.colour * INSIDE,
             (true, false) => WARNING,
         };
         let view = fragment.towards_eye;
-        let sky_seen = studio.sky_visibility(fragment.place, normal);
-        let key_seen = studio.key_visibility(fragment.place, normal);
+        let [sky_seen, key_seen] = fragment.reached;
 
         // Wrapped around the edge a little, as light in skin and plaster is.
         let wrapped = |towards: Vec3, wrap: f32| ((normal.dot(towards) + wrap) / (1.0 + wrap)).max(0.0);

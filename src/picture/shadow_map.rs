@@ -18,6 +18,8 @@ pub(super) struct ShadowMap {
     texel: f32,
     /// Nearest surface to the light, along `towards`; minus infinity where there is none.
     depth: Vec<f32>,
+    /// The greatest depth of each texel and its eight neighbours: what lies above it is lit, without a closer look.
+    highest: Vec<f32>,
 }
 
 impl ShadowMap {
@@ -38,10 +40,11 @@ impl ShadowMap {
         let projected: Vec<Vec3> =
             places.iter().map(|p| ((flat(*p) - low) * texels_per_unit).extend(p.dot(towards))).collect();
         let depth = vec![f32::NEG_INFINITY; side * side];
-        let mut map = Self { side, towards, right, up, low, texels_per_unit, texel, depth };
+        let mut map = Self { side, towards, right, up, low, texels_per_unit, texel, depth, highest: Vec::new() };
         for triangle in triangles {
             map.fill(triangle.map(|v| projected[v as usize]));
         }
+        map.highest = highest_around(&map.depth, side);
         map
     }
 
@@ -94,6 +97,9 @@ impl ShadowMap {
         let slope = ((1.0 - cosine * cosine).max(0.0).sqrt() / cosine.max(1e-3)).min(6.0);
         let level = place.dot(self.towards) + self.texel * (1.0 + 1.8 * slope);
         let (x, y) = (u as usize, v as usize);
+        if self.highest[y * self.side + x] <= level {
+            return 1.0;
+        }
         let (across, down) = (spline(u - x as f32), spline(v - y as f32));
         let lit = |depth: f32| 1.0 - ((depth - level) * (1.0 / SOFTNESS)).clamp(0.0, 1.0);
         let mut sum = 0.0;
@@ -104,6 +110,24 @@ impl ShadowMap {
         }
         sum
     }
+}
+
+/// The maximum over 3 by 3 texels; at the border, where nothing is drawn, over those that are there.
+fn highest_around(depth: &[f32], side: usize) -> Vec<f32> {
+    let greater = |a: f32, b: f32| if a > b { a } else { b };
+    let mut across = depth.to_vec();
+    for (row, source) in across.chunks_mut(side).zip(depth.chunks(side)) {
+        for (texel, around) in row.iter_mut().skip(1).zip(source.windows(3)) {
+            *texel = greater(greater(around[0], around[1]), around[2]);
+        }
+    }
+    let mut highest = across.clone();
+    for row in 1..side - 1 {
+        for texel in row * side..(row + 1) * side {
+            highest[texel] = greater(greater(across[texel - side], across[texel]), across[texel + side]);
+        }
+    }
+    highest
 }
 
 /// Weights of three texels in a row for a place between the sides of the middle one, 0 to 1.

@@ -158,11 +158,7 @@ impl Catalogue {
         &mut self,
         convert: impl Fn(&A) -> Result<B, String> + Send + Sync + 'static,
     ) -> Result<(), CatalogueError> {
-        if self.add_conversion(convert) {
-            Ok(())
-        } else {
-            Err(CatalogueError::DuplicateConversion(A::NAME, B::NAME))
-        }
+        if self.add_conversion(convert) { Ok(()) } else { Err(CatalogueError::DuplicateConversion(A::NAME, B::NAME)) }
     }
 
     pub(crate) fn find_conversion(&self, from: WireType, to: WireType) -> Option<&Conversion> {

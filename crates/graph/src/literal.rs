@@ -179,7 +179,10 @@ impl Literal {
             Self::Strokes(strokes) => strokes.iter().enumerate().find_map(|(index, stroke)| {
                 let bad = |p: &StrokePoint| ![p.x, p.y, p.pressure.unwrap_or(0.0)].iter().all(|n| n.is_finite());
                 stroke.points.iter().position(bad).map(|point| {
-                    format!("stroke {index} \"{}\", point {point} has a coordinate that is not a finite number", stroke.name)
+                    format!(
+                        "stroke {index} \"{}\", point {point} has a coordinate that is not a finite number",
+                        stroke.name
+                    )
                 })
             }),
             Self::Integer(_) | Self::Boolean(_) | Self::Text(_) | Self::Choice(_) | Self::File(_) => None,

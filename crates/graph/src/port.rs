@@ -93,7 +93,9 @@ impl InputSpec {
             || matches!((wanted, literal), (Some(LiteralKind::Number), Literal::Integer(_)));
         if !fits {
             let mut reason = match wanted {
-                Some(kind) => format!("it takes {} such as {}, not {}", kind.phrase(), kind.example(), spelled(literal)),
+                Some(kind) => {
+                    format!("it takes {} such as {}, not {}", kind.phrase(), kind.example(), spelled(literal))
+                }
                 None => format!("it takes {} from a link; a literal can't stand here", self.wire),
             };
             if let (Some(LiteralKind::Integer), Literal::Number(number)) = (wanted, literal)

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::literal::{Choice, FilePath};
 use crate::node_kind::{ChoiceInput, Choices, Input, NodeKind, OptionalInput, Output};
 use crate::report::{Figure, Report};
-use crate::value::{Value, Wire};
+use crate::value::{ContentHash, Value, Wire};
 
 /// Why a node did not give a result. Any error converts into it with `?`.
 #[derive(Debug)]
@@ -113,6 +113,18 @@ impl<'a> Ports<'a> {
         }
     }
 
+    /// Hash of the value at an input: for a result that contains it unchanged.
+    ///
+    /// # Panics
+    /// As [`Ports::read`].
+    #[expect(clippy::panic, reason = "a foreign handle is a bug in the node's declaration, reported as its failure")]
+    pub fn content_hash<T: Wire>(&self, input: Input<T>) -> ContentHash {
+        match self.inputs.get(input.index).and_then(Option::as_ref) {
+            Some(value) => value.hash(),
+            None => panic!("input handle {} does not belong to kind \"{}\"", input.index, self.kind.name()),
+        }
+    }
+
     /// The number, integer or flag at an input.
     pub fn value<T: Wire + Copy>(&self, input: Input<T>) -> T {
         *self.read(input)
@@ -197,15 +209,28 @@ impl<'a> Ports<'a> {
 
     pub(crate) fn finish(self) -> Result<(Vec<Value>, Report), NodeError> {
         let kind = self.kind;
-        let outputs: Option<Vec<Value>> = self.outputs.iter().cloned().collect();
-        outputs.map(|values| (values, self.report)).ok_or_else(|| {
-            let missing: Vec<_> =
-                kind.outputs().iter().zip(&self.outputs).filter(|(_, o)| o.is_none()).map(|(s, _)| &*s.name).collect();
-            NodeError::new(format!(
-                "the node kind \"{}\" did not write its output {}; this is a mistake in the kind",
-                kind.name(),
-                missing.join(", ")
-            ))
-        })
+        let mistake = |what: String| {
+            Err(NodeError::new(format!("the node kind \"{}\" {what}; this is a mistake in the kind", kind.name())))
+        };
+        let mut values = Vec::with_capacity(self.outputs.len());
+        let mut missing = Vec::new();
+        for (spec, output) in kind.outputs().iter().zip(self.outputs) {
+            match output {
+                None => missing.push(spec.name.as_str()),
+                Some(value) if value.wire() != spec.wire => {
+                    let (wrote, declared) = (value.wire(), spec.wire);
+                    return mistake(format!(
+                        "wrote {wrote} to its output \"{}\", which is declared as {declared}",
+                        spec.name
+                    ));
+                }
+                Some(value) => values.push(value),
+            }
+        }
+        if missing.is_empty() {
+            Ok((values, self.report))
+        } else {
+            mistake(format!("did not write its output {}", missing.join(", ")))
+        }
     }
 }

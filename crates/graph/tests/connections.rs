@@ -21,7 +21,8 @@ fn refused(rig: &mut Rig, from: &str, to: &str) -> String {
 #[test]
 fn equal_types_connect_and_different_ones_are_refused_by_name() {
     let mut rig = Rig::default();
-    for (kind, name) in [("add", "sum"), ("sign", "sign"), ("spell", "spell"), ("samples", "list"), ("count", "count")] {
+    for (kind, name) in [("add", "sum"), ("sign", "sign"), ("spell", "spell"), ("samples", "list"), ("count", "count")]
+    {
         rig.add(kind, name);
     }
     rig.link("sum.sum", "sign.number");
@@ -216,7 +217,12 @@ fn literals_that_do_not_fit_are_refused_and_change_nothing() {
         (all, "number", Literal::Number(f64::NAN), "it is not a finite number"),
         (all, "number", Literal::Number(f64::INFINITY), "it is not a finite number"),
         (all, "length", Literal::Number(11.0), "11 m is out of range: give 0.001 to 10 m"),
-        (all, "integer", Literal::Number(2.0), "it takes a whole number such as 64, not the number 2.0: leave out the decimal point"),
+        (
+            all,
+            "integer",
+            Literal::Number(2.0),
+            "it takes a whole number such as 64, not the number 2.0: leave out the decimal point",
+        ),
         (all, "integer", Literal::Number(2.5), "it takes a whole number such as 64, not the number 2.5"),
         (all, "number", Literal::Boolean(true), "it takes a number such as 0.5, not true"),
         (all, "text", Literal::Choice("down".into()), "it takes a text such as Text(\"...\"), not a choice"),

@@ -1,8 +1,10 @@
 //! The types that travel along wires.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 use maquette_geometry::{curve, mesh, scene, sections};
-use maquette_graph::{ContentHasher, Wire};
+use maquette_graph::{ContentHash, ContentHasher, Wire};
 
 /// One curve.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,15 +18,24 @@ pub struct Curves(pub Vec<curve::Curve>);
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sections(pub sections::Sections);
 
-/// A polygon mesh.
+/// A polygon mesh. Shared, because meshes are large and are handed on unchanged.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mesh(pub mesh::Mesh);
+pub struct Mesh(pub Arc<mesh::Mesh>);
+
+impl Mesh {
+    /// Wraps a mesh.
+    pub fn new(mesh: mesh::Mesh) -> Self {
+        Self(Arc::new(mesh))
+    }
+}
 
 /// A mesh with its material, ready to be written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshResult {
     /// The mesh.
-    pub mesh: mesh::Mesh,
+    pub mesh: Arc<mesh::Mesh>,
+    /// Hash of the mesh as it arrived, which need not be computed again.
+    pub mesh_hash: ContentHash,
     /// How it looks; its name is filled in by who writes the file.
     pub material: scene::Material,
 }
@@ -62,10 +73,7 @@ fn curve_bytes(curve: &curve::Curve) -> usize {
 fn hash_mesh(hasher: &mut ContentHasher, mesh: &mesh::Mesh) {
     hasher.text(mesh.name());
     hash_points(hasher, mesh.positions());
-    hasher.integer(mesh.polygon_count() as u64);
-    for polygon in 0..mesh.polygon_count() {
-        hasher.integer(mesh.corner_range(polygon).start as u64);
-    }
+    hasher.indices(mesh.starts());
     hasher.indices(mesh.corners());
     match mesh.normals() {
         Some(normals) => hash_points(hasher, normals),
@@ -178,7 +186,7 @@ impl Wire for MeshResult {
     const DESCRIPTION: &'static str = "A mesh with its material, ready to be written.";
 
     fn hash_content(&self, hasher: &mut ContentHasher) {
-        hash_mesh(hasher, &self.mesh);
+        hasher.hash(self.mesh_hash);
         hasher.text(&self.material.name);
         hasher.numbers(&self.material.colour);
         hasher.numbers(&[self.material.metallic, self.material.roughness]);

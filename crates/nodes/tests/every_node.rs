@@ -85,11 +85,11 @@ fn test_catalogue() -> Catalogue {
     for (index, sections) in [flat, open, huge].into_iter().enumerate() {
         catalogue.register(constant(&format!("nasty-sections-{index}"), wire::Sections(sections))).unwrap();
     }
-    catalogue.register(constant("nasty-mesh-0", wire::Mesh(Mesh::default()))).unwrap();
+    catalogue.register(constant("nasty-mesh-0", wire::Mesh::new(Mesh::default()))).unwrap();
     catalogue.register(constant("good-curves", wire::Curves(four_rails()))).unwrap();
     catalogue.register(constant("good-curve", wire::Curve(circle("ring", 1.2, 1.25)))).unwrap();
     catalogue.register(constant("good-sections", wire::Sections(tube()))).unwrap();
-    catalogue.register(constant("good-mesh", wire::Mesh(square()))).unwrap();
+    catalogue.register(constant("good-mesh", wire::Mesh::new(square()))).unwrap();
     catalogue
 }
 
@@ -245,9 +245,7 @@ fn spoilers(catalogue: &Catalogue, input: &maquette_graph::InputSpec) -> Vec<(St
                 .map(|text| literal(Literal::Text(text.to_owned())))
                 .into()
         }
-        Some(LiteralKind::Choice) => {
-            input.options.iter().map(|o| literal(Literal::Choice(o.name.clone()))).collect()
-        }
+        Some(LiteralKind::Choice) => input.options.iter().map(|o| literal(Literal::Choice(o.name.clone()))).collect(),
         Some(LiteralKind::Vector) => {
             [[0.0; 3], [1e300; 3], [-1.0, 1e-300, 1.0]].map(|v| literal(Literal::Vector(v))).into()
         }

@@ -5,7 +5,7 @@ use super::quantity::Quantity;
 /// `L D L'` of a symmetric positive definite matrix whose entries vanish farther than `width` from the diagonal.
 /// Factoring takes O(n width^2), solving O(n width).
 #[derive(Clone, Debug)]
-pub(super) struct BandedFactor {
+pub(crate) struct BandedFactor {
     width: usize,
     /// Row `i` holds `L[i][i - k]` for `k = 1..=width`, zero where there is no such column.
     lower: Vec<f64>,
@@ -15,7 +15,7 @@ pub(super) struct BandedFactor {
 impl BandedFactor {
     /// Factors the `size` by `size` matrix `entry(row, column)`, asked for with `column <= row <= column + width`.
     /// `None` where it is not positive definite to working precision.
-    pub(super) fn new(size: usize, width: usize, entry: impl Fn(usize, usize) -> f64) -> Option<Self> {
+    pub(crate) fn new(size: usize, width: usize, entry: impl Fn(usize, usize) -> f64) -> Option<Self> {
         let mut factor = Self { width, lower: vec![0.0; size * width], diagonal: vec![0.0; size] };
         for row in 0..size {
             let first = row.saturating_sub(width);
@@ -41,7 +41,7 @@ impl BandedFactor {
     }
 
     /// Replaces the right side by the solution. `right` has one entry a row.
-    pub(super) fn solve<T: Quantity>(&self, right: &mut [T]) {
+    pub(crate) fn solve<T: Quantity>(&self, right: &mut [T]) {
         let size = self.diagonal.len();
         for row in 0..size {
             for column in row.saturating_sub(self.width)..row {

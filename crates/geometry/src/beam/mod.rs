@@ -16,6 +16,7 @@ mod quantity;
 mod stiffness;
 mod system;
 
+pub(crate) use banded::BandedFactor;
 pub use closed::ClosedBeam;
 pub use error::BeamError;
 pub use hermite::HermiteBasis;

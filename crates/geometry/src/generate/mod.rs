@@ -10,6 +10,7 @@
 
 mod between_closed;
 mod case;
+mod centring;
 mod error;
 mod feet;
 mod pace;

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::centring::centred;
 use super::view_plane::view_normal;
 use super::{GenerateError, GenerateOptions, Generated, ViewPlacement, check_size, report};
 use crate::beam::ClosedBeam;
@@ -19,7 +20,8 @@ use crate::sections::Sections;
 /// there is a pole, exactly, and sections stand closer together towards it, half as far apart as in the mean.
 ///
 /// [`ViewPlacement::Centred`] shifts each pair along its own viewing direction so that the middles of both pairs agree,
-/// seen along both directions; each silhouette stays as drawn in its own view. A pair that is not flat to within 1 % of
+/// seen along both directions, but for detail finer than about a third of the rails' length; each silhouette stays as
+/// drawn in its own view. A pair that is not flat to within 1 % of
 /// its size, and two views less than 25 degrees apart, stay as drawn, with a note.
 ///
 /// # Errors
@@ -47,25 +49,34 @@ pub fn two_views(
         ViewPlacement::AsDrawn => [None, None],
     };
     let arcs = rails.each_ref().map(ArcLength::of);
-    let mut rows = Vec::with_capacity(options.sections);
-    for (done, t) in stations(options.sections, base.is_some(), tip.is_some()).into_iter().enumerate() {
-        report(progress, done, options.sections)?;
-        let mut pins = arcs.each_ref().map(|arc| arc.point_at_fraction(t));
-        for (apex, nearness) in [(&base, 1.0 - t), (&tip, t)] {
-            if let Some(apex) = apex {
-                // Full at the apex and fading quadratically, so that a small gap is no kink.
-                let pull = nearness * nearness;
-                for (pin, gap) in pins.iter_mut().zip(apex.gaps) {
-                    *pin += gap * pull;
+    let stations = stations(options.sections, base.is_some(), tip.is_some());
+    let apex_at = |t: f64| [(&base, 0.0), (&tip, 1.0)].into_iter().find_map(|(a, at)| a.as_ref().filter(|_| t == at));
+    let mut pins: Vec<[DVec3; 4]> = stations
+        .iter()
+        .map(|t| {
+            let mut pins = arcs.each_ref().map(|arc| arc.point_at_fraction(*t));
+            for (apex, nearness) in [(&base, 1.0 - t), (&tip, *t)] {
+                if let Some(apex) = apex {
+                    // Full at the apex and fading quadratically, so that a small gap is no kink.
+                    let pull = nearness * nearness;
+                    for (pin, gap) in pins.iter_mut().zip(apex.gaps) {
+                        *pin += gap * pull;
+                    }
                 }
             }
-        }
-        let apex = [(&base, 0.0), (&tip, 1.0)].into_iter().find_map(|(a, at)| a.as_ref().filter(|_| t == at));
-        let pins = match apex {
-            Some(apex) => [apex.point; 4],
-            None => centred(pins, normals),
-        };
-        rows.push(beam.solve(&pins)?);
+            apex_at(*t).map_or(pins, |apex| [apex.point; 4])
+        })
+        .collect();
+    let held: Vec<bool> = stations.iter().map(|t| apex_at(*t).is_some()).collect();
+    centred(&mut pins, normals, &stations, &held);
+    let mut rows = Vec::with_capacity(options.sections);
+    for (done, (t, pins)) in stations.iter().zip(pins).enumerate() {
+        report(progress, done, options.sections)?;
+        // Four equal pins give that point, but for round-off; a pole is exact.
+        rows.push(match apex_at(*t) {
+            Some(apex) => vec![apex.point; nodes],
+            None => beam.solve(&pins)?,
+        });
     }
     report(progress, 1, 1)?;
     let largest_gap = [base, tip].iter().flatten().flat_map(|apex| apex.gaps).map(DVec3::length).fold(0.0, f64::max);
@@ -130,26 +141,6 @@ fn view_normals(rails: &[Curve; 4], notes: &mut Vec<String>) -> [Option<DVec3>; 
         return [None, None];
     }
     normals
-}
-
-/// The four points with each pair shifted along its normal, so that the middles of both pairs agree in these directions.
-fn centred(mut pins: [DVec3; 4], normals: [Option<DVec3>; 2]) -> [DVec3; 4] {
-    let between = ((pins[1] + pins[3]) - (pins[0] + pins[2])) * 0.5;
-    let shifts = match normals {
-        [Some(a), Some(b)] => {
-            let cosine = a.dot(b);
-            let (along_a, along_b) = (a.dot(between), b.dot(between));
-            let share = 1.0 / (1.0 - cosine * cosine);
-            [a * ((along_a - cosine * along_b) * share), b * ((cosine * along_a - along_b) * share)]
-        }
-        [Some(a), None] => [a * a.dot(between), DVec3::ZERO],
-        [None, Some(b)] => [DVec3::ZERO, b * -b.dot(between)],
-        [None, None] => [DVec3::ZERO; 2],
-    };
-    for (k, pin) in pins.iter_mut().enumerate() {
-        *pin += shifts[k % 2];
-    }
-    pins
 }
 
 #[cfg(test)]

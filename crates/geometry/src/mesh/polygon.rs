@@ -210,6 +210,11 @@ impl Mesh {
         &self.corners
     }
 
+    /// First corner of each polygon, and behind the last one the number of corners; empty for an empty mesh.
+    pub fn starts(&self) -> &[u32] {
+        &self.starts
+    }
+
     /// Unit normal of each corner, where there are normals.
     pub fn normals(&self) -> Option<&[DVec3]> {
         self.normals.as_deref()

@@ -116,8 +116,7 @@ impl Evaluator {
     pub fn evaluate(&mut self, catalogue: &Catalogue, graph: &Graph, request: &Request<'_>) -> Evaluation {
         let begun = Instant::now();
         self.sync(graph, request);
-        let planner =
-            Planner { catalogue, graph, memo: &self.memo, base: &request.base, cancel: &request.cancel };
+        let planner = Planner { catalogue, graph, memo: &self.memo, base: &request.base, cancel: &request.cancel };
         let plan = planner.plan(&request.targets, |id| self.slots.get(id.index()).and_then(|slot| slot.key));
         self.announce(graph, request, &plan);
         self.start_pool(&plan);
@@ -157,9 +156,9 @@ impl Evaluator {
             // Fingerprints read files, so only those of nodes that are needed are taken.
             let needed = graph.upstream(&request.targets).into_iter();
             let needed = needed.filter(|id| self.slots[id.index()].key.is_some());
-            stale.extend(needed.filter(|id| {
-                graph.node(*id).is_some_and(|node| self.fingerprint_changed(*id, node, request))
-            }));
+            stale.extend(
+                needed.filter(|id| graph.node(*id).is_some_and(|node| self.fingerprint_changed(*id, node, request))),
+            );
         }
         while let Some(id) = stale.pop() {
             // A stale node's dependents are stale already: keys are given and taken from the sources downwards.
@@ -190,8 +189,8 @@ impl Evaluator {
                     .map_or(crate::evaluate::plan::Supply::Nothing, crate::evaluate::plan::Supply::Value)
             })
             .collect();
-        let now = gather(kind, &supplies, |_, _| None)
-            .and_then(|inputs| key(kind, &inputs, &request.base, &request.cancel));
+        let now =
+            gather(kind, &supplies, |_, _| None).and_then(|inputs| key(kind, &inputs, &request.base, &request.cancel));
         now.ok().flatten() != self.slots[id.index()].key
     }
 
@@ -257,8 +256,7 @@ impl Evaluator {
             if wanted && let Some(kind) = &node.kind {
                 evaluation.output_names.insert(*id, kind.outputs().iter().map(|o| o.name.clone()).collect());
             }
-            let outcome =
-                Outcome { name: node.name.clone(), kind: node.kind_name.clone(), state, ran, duration };
+            let outcome = Outcome { name: node.name.clone(), kind: node.kind_name.clone(), state, ran, duration };
             evaluation.outcomes.insert(*id, outcome);
         }
         evaluation.duration = begun.elapsed();
@@ -268,9 +266,7 @@ impl Evaluator {
 
 fn state_of(entry: &Arc<Entry>, wanted: bool) -> OutcomeState {
     match &entry.result {
-        Ok(values) => {
-            OutcomeState::Done { values: wanted.then(|| values.clone()), report: entry.report.clone() }
-        }
+        Ok(values) => OutcomeState::Done { values: wanted.then(|| values.clone()), report: entry.report.clone() },
         Err(failure) => OutcomeState::Failed(failure.clone()),
     }
 }

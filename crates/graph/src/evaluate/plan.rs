@@ -178,14 +178,15 @@ impl Planner<'_> {
                     let Some((output, output_spec)) = output else {
                         return Err(fail(format!("\"{}\" has no output \"{}\"", source.name, link.output)));
                     };
-                    let conversion = if output_spec.wire == spec.wire {
-                        None
-                    } else {
-                        let found = self.catalogue.find_conversion(output_spec.wire, spec.wire);
-                        Some(found.cloned().ok_or_else(|| {
-                            fail(format!("it takes {}, and {} arrives", spec.wire, output_spec.wire))
-                        })?)
-                    };
+                    let conversion =
+                        if output_spec.wire == spec.wire {
+                            None
+                        } else {
+                            let found = self.catalogue.find_conversion(output_spec.wire, spec.wire);
+                            Some(found.cloned().ok_or_else(|| {
+                                fail(format!("it takes {}, and {} arrives", spec.wire, output_spec.wire))
+                            })?)
+                        };
                     match found {
                         Found::Known(_, entry) if entry.result.is_err() => {
                             blame(&mut waiting, found, &source.name);

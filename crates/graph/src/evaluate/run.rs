@@ -185,9 +185,7 @@ impl Runner<'_> {
             // A node may answer a cancellation with an error of its own; that says nothing about its inputs.
             Err(_) if self.cancel.is_cancelled() => return Ended::Cancelled,
             Err(NodeError::Cancelled) => return Ended::Cancelled,
-            Err(NodeError::Failed { input, message }) => {
-                (Err(failure(&step.kind, input, message)), Arc::default())
-            }
+            Err(NodeError::Failed { input, message }) => (Err(failure(&step.kind, input, message)), Arc::default()),
             Ok((values, report)) => (Ok(values.into()), Arc::new(report)),
         };
         let entry = Arc::new(Entry { result, report, duration });

@@ -261,11 +261,8 @@ impl<'a> Reader<'a> {
             Ok(id) => return Some(id),
             Err(error) => error,
         };
-        let stem: String = wanted
-            .chars()
-            .map(|c| if c.is_alphanumeric() || "-_ ".contains(c) { c } else { '-' })
-            .take(100)
-            .collect();
+        let stem: String =
+            wanted.chars().map(|c| if c.is_alphanumeric() || "-_ ".contains(c) { c } else { '-' }).take(100).collect();
         let stem = if stem.trim().is_empty() { "node" } else { stem.trim() };
         let mut number = self.next_number.get(stem).copied().unwrap_or(1);
         let (id, kept) = loop {

@@ -46,7 +46,8 @@ pub(super) fn syntax_error(text: &str, lines: &LineIndex, error: &SpannedError) 
 pub(super) fn attributes(text: &str, tree: &FileTree<'_>) -> Option<usize> {
     let at = text.find("#![")?;
     let first = [tree.version, tree.notes].into_iter().flatten().chain(tree.unknown.iter().map(|(_, raw)| *raw));
-    let before_first = first.map(|raw| (trimmed(raw).as_ptr() as usize).saturating_sub(text.as_ptr() as usize)).min()?;
+    let before_first =
+        first.map(|raw| (trimmed(raw).as_ptr() as usize).saturating_sub(text.as_ptr() as usize)).min()?;
     // RON itself says whether that is an attribute or part of a comment: a raw value must have none.
     let head = text.get(..before_first)?;
     (at < before_first && RawValue::from_ron(&format!("{head}0)")).is_err()).then_some(at)

@@ -152,7 +152,8 @@ fn identifier(name: &str) -> String {
     let ascii = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     // Which other characters may stand plainly is for RON to say.
-    let reads_back = || ron::from_str::<FileTree<'_>>(&format!("({name}: 0)")).is_ok_and(|t| t.unknown.iter().any(|f| f.0 == name));
+    let reads_back =
+        || ron::from_str::<FileTree<'_>>(&format!("({name}: 0)")).is_ok_and(|t| t.unknown.iter().any(|f| f.0 == name));
     if ascii || reads_back() { name.to_owned() } else { format!("r#{name}") }
 }
 

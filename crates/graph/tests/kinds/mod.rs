@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use maquette_graph::{
     AtPort, Catalogue, Choices, ContentHasher, Evaluation, Evaluator, EvaluatorOptions, EventLog, Graph, Literal,
-    NodeError, NodeId, NodeKind, OutcomeState, Request, Unit, Wire,
+    NodeId, NodeKind, OutcomeState, Request, Unit, Wire,
 };
 
 /// How a result is rounded.
@@ -169,7 +169,8 @@ fn root() -> NodeKind {
         let root = node.output::<f64>("root", "Its square root.");
         node.evaluate(move |ports| {
             let value = ports.value(number);
-            let positive = if value < 0.0 { Err(format!("{value} has no real root: give 0 or more")) } else { Ok(value) };
+            let positive =
+                if value < 0.0 { Err(format!("{value} has no real root: give 0 or more")) } else { Ok(value) };
             let result = positive.at(number)?.sqrt();
             ports.write(root, result);
             Ok(())
@@ -269,10 +270,10 @@ fn everything() -> NodeKind {
         node.strokes("strokes", "Strokes.");
         node.optional::<Samples>("samples", "Samples.");
         let same = node.output::<f64>("number", "The number.");
-        node.output::<i64>("integer", "None.");
+        let none = node.output::<i64>("integer", "Zero.");
         node.evaluate(move |ports| {
-            let _: Result<(), NodeError> = ports.progress(0.5);
             ports.write(same, ports.value(number));
+            ports.write(none, 0);
             Ok(())
         });
     })
@@ -323,12 +324,7 @@ impl Rig {
     }
 
     pub fn with_options(options: &EvaluatorOptions) -> Self {
-        Self {
-            catalogue: catalogue(),
-            graph: Graph::new(),
-            evaluator: Evaluator::new(options),
-            log: Vec::new(),
-        }
+        Self { catalogue: catalogue(), graph: Graph::new(), evaluator: Evaluator::new(options), log: Vec::new() }
     }
 
     pub fn register(&mut self, kind: NodeKind) {

@@ -36,7 +36,7 @@ pub(crate) fn kind() -> NodeKind {
         let name = taken[0].name().to_owned();
         let joined = join(taken).at(file)?;
         let scaled = transform(&joined, &DAffine3::from_scale(glam::DVec3::splat(ports.value(scale)))).at(scale)?;
-        ports.write(mesh, wire::Mesh(scaled.named(name)));
+        ports.write(mesh, wire::Mesh::new(scaled.named(name)));
         Ok(())
     });
     node

@@ -14,11 +14,11 @@ pub(crate) fn kind() -> NodeKind {
         .collect();
     let joined = node.output::<wire::Mesh>("mesh", "All meshes as one: that of a, then that of b, and so on.");
     node.evaluate(move |ports| {
-        let connected: Vec<_> = meshes.iter().filter_map(|mesh| ports.read_optional(*mesh)).map(|m| &m.0).collect();
+        let connected: Vec<_> = meshes.iter().filter_map(|mesh| ports.read_optional(*mesh)).map(|m| &*m.0).collect();
         if connected.is_empty() {
             return Err(NodeError::new("nothing is connected: link at least one mesh"));
         }
-        ports.write(joined, wire::Mesh(join(connected)?));
+        ports.write(joined, wire::Mesh::new(join(connected)?));
         Ok(())
     });
     node

@@ -22,7 +22,7 @@ pub(crate) fn kind() -> NodeKind {
             DAffine3 { translation: axis.reflect(DVec3::ZERO, offset), ..DAffine3::from_scale(axis.signs()) };
         let image = transform(original, &reflection).at(mesh)?;
         let result = if ports.value(keep) { join([original, &image]).at(mesh)? } else { image };
-        ports.write(mirrored, wire::Mesh(result.named(original.name())));
+        ports.write(mirrored, wire::Mesh::new(result.named(original.name())));
         Ok(())
     });
     node

@@ -18,7 +18,7 @@ pub(crate) fn kind() -> NodeKind {
     let transformed = node.output::<wire::Mesh>("mesh", "The transformed mesh.");
     node.evaluate(move |ports| {
         let moved = transform(&ports.read(mesh).0, &affine.read(ports)?).at(mesh)?;
-        ports.write(transformed, wire::Mesh(moved));
+        ports.write(transformed, wire::Mesh::new(moved));
         Ok(())
     });
     node

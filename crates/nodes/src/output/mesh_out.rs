@@ -24,8 +24,9 @@ pub(crate) fn kind() -> NodeKind {
             roughness: ports.value(roughness),
             double_sided: ports.value(double_sided),
         };
+        let mesh_hash = ports.content_hash(mesh);
         let mesh = ports.read(mesh).0.clone();
-        ports.write(result, wire::MeshResult { mesh, material });
+        ports.write(result, wire::MeshResult { mesh, mesh_hash, material });
         Ok(())
     });
     node

@@ -64,7 +64,7 @@ pub(crate) fn kind() -> NodeKind {
             pole: ports.choice(pole).0,
         };
         let skinned = skin(&ports.read(sections).0, &options, &ports.progress_callback()).at(sections)?;
-        ports.write(mesh, wire::Mesh(skinned));
+        ports.write(mesh, wire::Mesh::new(skinned));
         Ok(())
     });
     node

@@ -8,7 +8,8 @@ use crate::mesh::Mesh;
 use crate::scene::Scene;
 
 fn scene_of(mesh: Mesh) -> Scene {
-    Scene { meshes: vec![item(&mesh.name().to_owned(), mesh)], curves: vec![] }
+    let name = mesh.name().to_owned();
+    Scene { meshes: vec![item(&name, mesh)], curves: vec![] }
 }
 
 fn text_of(scene: &Scene, library: Option<&str>) -> String {
