@@ -18,10 +18,12 @@ use super::tile::{Bins, PixelRect, TILE};
 const SAME_NORMAL: f32 = 0.9;
 /// In subject units.
 const SAME_PLACE: f32 = 0.03;
-/// Pixels a side of a block in which one surface asks for shadows only once; they are softer than that.
+/// Pixels a side of a block in which shadows are asked for only once, where normals and places are as good as the same.
 const BLOCK: usize = 2;
 /// Least cosine between normals for that.
-const SAME_SHADOW: f32 = 0.97;
+const SAME_SHADOW_NORMAL: f32 = 0.99;
+/// Greatest distance for that, in subject units: a fifth of a texel of the shadow maps.
+const SAME_SHADOW_PLACE: f32 = 0.002;
 
 /// The bytes of a picture, row by row.
 pub(super) fn pixels(
@@ -178,8 +180,8 @@ struct Shadow {
 impl Shadow {
     fn holds_for(&self, model: u32, place: Vec3, normal: Vec3) -> bool {
         self.model == model
-            && self.normal.dot(normal) >= SAME_SHADOW
-            && self.place.distance_squared(place) < SAME_PLACE * SAME_PLACE
+            && self.normal.dot(normal) >= SAME_SHADOW_NORMAL
+            && self.place.distance_squared(place) < SAME_SHADOW_PLACE * SAME_SHADOW_PLACE
     }
 }
 

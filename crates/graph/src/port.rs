@@ -101,7 +101,9 @@ impl InputSpec {
             if let (Some(LiteralKind::Integer), Literal::Number(number)) = (wanted, literal)
                 && number.fract() == 0.0
             {
-                reason.push_str(": leave out the decimal point");
+                // 2^63, where the whole numbers end.
+                let too_large = number.abs() >= 9_223_372_036_854_775_808.0;
+                reason.push_str(if too_large { ": it is too large for one" } else { ": leave out the decimal point" });
             }
             return Some(reason);
         }

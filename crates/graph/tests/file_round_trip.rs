@@ -54,8 +54,16 @@ fn full() -> Rig {
     rig.put("all.file", Literal::File("a folder/b\\c.txt".to_owned()));
     let point = |x, y, pressure| StrokePoint { x, y, pressure };
     let strokes = vec![
-        Stroke { name: "ring // one".into(), closed: true, points: vec![point(0.1, 0.2, None), point(0.3, -0.4, None)] },
-        Stroke { name: String::new(), closed: false, points: vec![point(1.0, 2.0, Some(0.5)), point(1e9, 2e-9, Some(0.0))] },
+        Stroke {
+            name: "ring // one".into(),
+            closed: true,
+            points: vec![point(0.1, 0.2, None), point(0.3, -0.4, None)],
+        },
+        Stroke {
+            name: String::new(),
+            closed: false,
+            points: vec![point(1.0, 2.0, Some(0.5)), point(1e9, 2e-9, Some(0.0))],
+        },
         Stroke { name: "empty".into(), closed: false, points: vec![] },
     ];
     rig.put("all.strokes", Literal::Strokes(strokes));
@@ -188,7 +196,19 @@ fn results_are_the_same_after_loading() {
 fn extreme() -> impl Strategy<Value = f64> {
     prop_oneof![
         any::<f64>().prop_filter("finite", |n| n.is_finite()),
-        prop::sample::select(vec![0.0, -0.0, 1.0, f64::MAX, f64::MIN, f64::MIN_POSITIVE, 5e-324, f64::EPSILON, 1e16, 0.1, -1e300]),
+        prop::sample::select(vec![
+            0.0,
+            -0.0,
+            1.0,
+            f64::MAX,
+            f64::MIN,
+            f64::MIN_POSITIVE,
+            5e-324,
+            f64::EPSILON,
+            1e16,
+            0.1,
+            -1e300
+        ]),
         (-1000_i32..1000).prop_map(f64::from),
     ]
 }
@@ -198,9 +218,13 @@ fn text() -> impl Strategy<Value = String> {
 }
 
 fn stroke() -> impl Strategy<Value = Stroke> {
-    let point = (extreme(), extreme(), prop::option::of(extreme())).prop_map(|(x, y, pressure)| StrokePoint { x, y, pressure });
-    (text(), any::<bool>(), prop::collection::vec(point, 0..6))
-        .prop_map(|(name, closed, points)| Stroke { name, closed, points })
+    let point =
+        (extreme(), extreme(), prop::option::of(extreme())).prop_map(|(x, y, pressure)| StrokePoint { x, y, pressure });
+    (text(), any::<bool>(), prop::collection::vec(point, 0..6)).prop_map(|(name, closed, points)| Stroke {
+        name,
+        closed,
+        points,
+    })
 }
 
 fn literal() -> impl Strategy<Value = (&'static str, Literal)> {

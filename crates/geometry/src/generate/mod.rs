@@ -13,14 +13,17 @@ mod case;
 mod centring;
 mod error;
 mod feet;
+mod local_detail;
 mod pace;
 mod patch;
+mod smoothing;
 mod two_views;
 mod view_plane;
 
 pub use between_closed::between_closed;
 pub use case::Case;
 pub use error::GenerateError;
+pub use local_detail::LocalDetail;
 pub use patch::blend_generators;
 pub use two_views::two_views;
 
@@ -72,6 +75,9 @@ pub struct GenerateOptions {
     pub weights: Weights,
     /// Depth of silhouettes.
     pub placement: ViewPlacement,
+    /// Keeps fine detail of the silhouettes of two views near their rails; none lets it reach the next rail, as in the
+    /// thesis.
+    pub detail: Option<LocalDetail>,
     /// How far a rail's end may be from where it should be, its closed curve or the common apex, metres.
     pub snap: f64,
 }
@@ -85,6 +91,7 @@ impl Default for GenerateOptions {
             nodes: 64,
             weights: Weights::default(),
             placement: ViewPlacement::default(),
+            detail: None,
             snap: 0.02,
         }
     }

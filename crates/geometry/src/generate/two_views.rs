@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::centring::centred;
+use super::local_detail::take_off;
 use super::view_plane::view_normal;
 use super::{GenerateError, GenerateOptions, Generated, ViewPlacement, check_size, report};
 use crate::beam::ClosedBeam;
@@ -69,13 +70,26 @@ pub fn two_views(
         .collect();
     let held: Vec<bool> = stations.iter().map(|t| apex_at(*t).is_some()).collect();
     centred(&mut pins, normals, &stations, &held);
+    let lengths = arcs.each_ref().map(ArcLength::length);
+    let detail = match options.detail {
+        Some(detail) if detail.wave > 0.0 && detail.reach < 1.0 => {
+            Some(take_off(&mut pins, detail, lengths, &stations, &held, quarter, options.stiffness)?)
+        }
+        _ => None,
+    };
     let mut rows = Vec::with_capacity(options.sections);
     for (done, (t, pins)) in stations.iter().zip(pins).enumerate() {
         report(progress, done, options.sections)?;
         // Four equal pins give that point, but for round-off; a pole is exact.
         rows.push(match apex_at(*t) {
             Some(apex) => vec![apex.point; nodes],
-            None => beam.solve(&pins)?,
+            None => {
+                let mut section = beam.solve(&pins)?;
+                if let Some(detail) = &detail {
+                    detail.put_back(done, quarter, &mut section);
+                }
+                section
+            }
         });
     }
     report(progress, 1, 1)?;
@@ -146,6 +160,7 @@ fn view_normals(rails: &[Curve; 4], notes: &mut Vec<String>) -> [Option<DVec3>; 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::generate::LocalDetail;
     use std::f64::consts::FRAC_PI_2;
 
     fn rail(name: &str, count: usize, at: impl Fn(f64) -> DVec3) -> Curve {
@@ -187,6 +202,34 @@ mod tests {
                 assert!((0.965..1.0 + 1e-12).contains(&radius) && p.y.abs() < 1e-12, "section {k}: {radius}");
             }
         }
+    }
+
+    #[test]
+    fn fine_detail_stays_near_its_rail_and_the_silhouette_exact() {
+        let lips = |t: f64| if (0.4..0.6).contains(&t) { 0.01 * (62.8 * t).sin() } else { 0.0 };
+        let mut rails = leg();
+        rails[3] = rail("front", 400, |t| DVec3::new(0.1445, t, 0.1 * t + 0.03 * t + lips(t)));
+        let options = GenerateOptions { sections: 96, ..GenerateOptions::default() };
+        let local = GenerateOptions { detail: Some(LocalDetail { wave: 0.3, reach: 0.4 }), ..options };
+        let (everywhere, near) = (run(&rails, &options).sections, run(&rails, &local).sections);
+        // Ripple of a column: how much neighbouring sections differ in bend.
+        let ripple = |sections: &Sections, node: usize| -> f64 {
+            let z: Vec<f64> = sections.iter().map(|s| s[node].z).collect();
+            z.windows(3).map(|w| (w[0] - 2.0 * w[1] + w[2]).abs()).fold(0.0, f64::max)
+        };
+        for (section, other) in everywhere.iter().zip(near.iter()) {
+            for rail in [0, 16, 32, 48] {
+                assert!(section[rail].distance(other[rail]) < 1e-12);
+            }
+        }
+        assert!(ripple(&near, 48) > 1e-3, "the detail is there");
+        assert!(ripple(&everywhere, 40) > 3e-4, "as printed it reaches half way around");
+        assert!(
+            ripple(&near, 40) < ripple(&everywhere, 40) / 10.0,
+            "{} {}",
+            ripple(&near, 40),
+            ripple(&everywhere, 40)
+        );
     }
 
     #[test]

@@ -5,7 +5,7 @@ use ron::value::RawValue;
 
 use crate::file::FileError;
 use crate::file::place::LineIndex;
-use crate::file::tree::{FileTree, trimmed};
+use crate::file::tree::FileTree;
 
 /// What is wrong, in plain words.
 pub(super) fn in_words(error: &Error) -> String {
@@ -20,7 +20,9 @@ pub(super) fn in_words(error: &Error) -> String {
         Error::ExpectedComma => "a ',' or a closing bracket is expected here".to_owned(),
         Error::TrailingCharacters => "more text follows where the end is expected".to_owned(),
         Error::ExpectedIdentifier => "the name of a field is expected here, without quotes".to_owned(),
-        other => other.to_string(),
+        Error::NoSuchEnumVariant { found, .. } => format!("\"{found}\" is not known"),
+        // The names of Rust types say nothing to those who write graphs.
+        other => other.to_string().replace("tuple variant Tagged::", "").replace("newtype variant Tagged::", ""),
     }
 }
 
@@ -30,7 +32,14 @@ pub(super) fn syntax_error(text: &str, lines: &LineIndex, error: &SpannedError) 
     let ends_early = matches!(error.code, Error::Eof | Error::ExpectedStringEnd | Error::UnclosedBlockComment)
         || (error.code != Error::TrailingCharacters && text.get(end..).is_none_or(|rest| rest.trim().is_empty()));
     // Where the end comes too early, what was begun last is no mistake; but an open quote or comment is.
-    let at = if error.code == Error::Eof { text.trim_end().len() } else { start };
+    let at = match error.code {
+        Error::Eof => text.trim_end().len(),
+        Error::UnclosedBlockComment => text.get(..start).and_then(|before| before.rfind("/*")).unwrap_or(start),
+        _ => start,
+    };
+    // RON may point at the white space before what it stumbled over.
+    let rest = text.get(at..).unwrap_or_default();
+    let at = if rest.trim().is_empty() { at } else { at + rest.len() - rest.trim_start().len() };
     let (line, column) = lines.place(at);
     let remedy = if text.trim().is_empty() {
         "the file is empty: an empty graph is (version: 1, nodes: {})"
@@ -44,11 +53,10 @@ pub(super) fn syntax_error(text: &str, lines: &LineIndex, error: &SpannedError) 
 
 /// Where the file begins with attributes, which RON allows, but which a graph has no use for.
 pub(super) fn attributes(text: &str, tree: &FileTree<'_>) -> Option<usize> {
-    let at = text.find("#![")?;
-    let first = [tree.version, tree.notes].into_iter().flatten().chain(tree.unknown.iter().map(|(_, raw)| *raw));
-    let before_first =
-        first.map(|raw| (trimmed(raw).as_ptr() as usize).saturating_sub(text.as_ptr() as usize)).min()?;
-    // RON itself says whether that is an attribute or part of a comment: a raw value must have none.
-    let head = text.get(..before_first)?;
-    (at < before_first && RawValue::from_ron(&format!("{head}0)")).is_err()).then_some(at)
+    let fields = [tree.version, tree.notes].into_iter().flatten().chain(tree.unknown.iter().map(|(_, raw)| *raw));
+    let places = fields.map(|raw| (raw.get_ron().as_ptr() as usize).saturating_sub(text.as_ptr() as usize));
+    let head = text.get(..places.min().unwrap_or(text.len()))?;
+    // Before the first attribute there is nothing but white space and comments, and so a value may follow.
+    let mut candidates = head.match_indices("#![").map(|(at, _)| at);
+    candidates.find(|at| RawValue::from_ron(&format!("{}0", &head[..*at])).is_ok())
 }

@@ -2,7 +2,7 @@
 //! Reference: thesis 6.1 and 6.3; paper 5.2.
 
 use maquette_geometry::generate::{
-    Case, GenerateOptions, Generated, ViewPlacement, Weights, between_closed, two_views,
+    Case, GenerateOptions, Generated, LocalDetail, ViewPlacement, Weights, between_closed, two_views,
 };
 use maquette_graph::{AtPort, Choices, NodeError, NodeKind};
 
@@ -73,6 +73,19 @@ pub(crate) fn kind() -> NodeKind {
     let weights = node.choice::<WeightsChoice>("weights", "How one rail's shape turns into the next one's.");
     let placement =
         node.choice::<PlacementChoice>("placement", "Depth of the contours of two views; a contour does not tell it.");
+    let detail_reach = node.number(
+        "detail-reach",
+        1.0,
+        0.05..=1.0,
+        "Two views: how far around fine bends of a contour reach, as a share of the way to the next; 1 as in the thesis.",
+    );
+    let detail_wave = node.length(
+        "detail-wave",
+        0.1,
+        1e-4..=1e3,
+        "Two views: bends of a contour shorter than this count as fine; matters where detail-reach is below 1.",
+    );
+    node.soft_range(detail_wave, 0.01..=0.5);
     let snap = node.length("snap", 0.02, 0.0..=10.0, "How far a rail's end may be from where it should be.");
     node.soft_range(snap, 0.0..=0.1);
     let generated = node.output::<wire::Sections>("sections", "The sections; the rails run along them.");
@@ -85,6 +98,8 @@ pub(crate) fn kind() -> NodeKind {
             nodes: ports.count(nodes),
             weights: ports.choice(weights).0,
             placement: ports.choice(placement).0,
+            detail: Some(LocalDetail { wave: ports.value(detail_wave), reach: ports.value(detail_reach) })
+                .filter(|detail| detail.reach < 1.0),
             snap: ports.value(snap),
         };
         let progress = ports.progress_callback();
