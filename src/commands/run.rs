@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use glam::DVec3;
 use maquette_geometry::file_format::FileFormat;
+use maquette_geometry::mesh::check;
 use maquette_geometry::scene::Scene;
 use maquette_graph::{Catalogue, Outcome, OutcomeState};
 use serde_json::{Value as Json, json};
@@ -118,6 +119,10 @@ fn as_text(arguments: &Arguments, evaluated: &Evaluated, scene: &Scene, written:
     for item in &scene.meshes {
         let (vertices, faces) = (item.mesh.positions().len(), item.mesh.polygon_count());
         console::say(format!("result {}: {vertices} vertices, {faces} faces", item.name));
+        if arguments.report {
+            let found = check(&item.mesh);
+            console::say(format!("      {found}; largest fold {:.1} degrees", found.largest_fold_degrees));
+        }
     }
     for item in &scene.curves {
         let points: usize = item.curves.iter().map(|c| c.points().len()).sum();

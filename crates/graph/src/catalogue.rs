@@ -7,14 +7,14 @@ use crate::literal::{Choice, Colour, FilePath, Strokes, Vector};
 use crate::node_kind::NodeKind;
 use crate::value::{Value, Wire, WireType};
 
-type ConvertFn = dyn Fn(&Value) -> Result<Value, String> + Send + Sync;
+pub(crate) type ConvertFn = dyn Fn(&Value) -> Result<Value, String> + Send + Sync;
 
 /// An implicit conversion between two wire types.
 #[derive(Clone)]
-pub(crate) struct Conversion {
+struct Conversion {
     from: WireType,
     to: WireType,
-    pub(crate) convert: Arc<ConvertFn>,
+    convert: Arc<ConvertFn>,
 }
 
 /// Node kinds by name, wire types and conversions.
@@ -161,8 +161,8 @@ impl Catalogue {
         if self.add_conversion(convert) { Ok(()) } else { Err(CatalogueError::DuplicateConversion(A::NAME, B::NAME)) }
     }
 
-    pub(crate) fn find_conversion(&self, from: WireType, to: WireType) -> Option<&Conversion> {
-        self.conversions.iter().find(|c| c.from == from && c.to == to)
+    pub(crate) fn find_conversion(&self, from: WireType, to: WireType) -> Option<&Arc<ConvertFn>> {
+        self.conversions.iter().find(|c| c.from == from && c.to == to).map(|c| &c.convert)
     }
 
     /// Whether a wire of type `from` may enter an input of type `to`.

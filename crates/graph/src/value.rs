@@ -26,32 +26,42 @@ pub trait Wire: Any + Send + Sync {
 
 /// Identity of a wire type at run time.
 #[derive(Clone, Copy)]
-pub struct WireType {
+pub struct WireType(&'static WireDescription);
+
+/// Apart from [`WireType`], because every value and every link carries one of those.
+struct WireDescription {
     id: TypeId,
     name: &'static str,
     description: &'static str,
 }
 
+trait Described: Wire {
+    const WIRE: WireDescription =
+        WireDescription { id: TypeId::of::<Self>(), name: Self::NAME, description: Self::DESCRIPTION };
+}
+
+impl<T: Wire> Described for T {}
+
 impl WireType {
     /// The type of wires that carry `T`.
     pub fn of<T: Wire>() -> Self {
-        Self { id: TypeId::of::<T>(), name: T::NAME, description: T::DESCRIPTION }
+        Self(&T::WIRE)
     }
 
     /// Name, such as `curves`.
     pub fn name(&self) -> &'static str {
-        self.name
+        self.0.name
     }
 
     /// One line on what such a value is.
     pub fn description(&self) -> &'static str {
-        self.description
+        self.0.description
     }
 }
 
 impl PartialEq for WireType {
     fn eq(&self, other: &Self) -> bool {
-        self.id == other.id
+        self.0.id == other.0.id
     }
 }
 
@@ -59,13 +69,13 @@ impl Eq for WireType {}
 
 impl fmt::Debug for WireType {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name)
+        f.write_str(self.name())
     }
 }
 
 impl fmt::Display for WireType {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name)
+        f.write_str(self.name())
     }
 }
 
@@ -157,6 +167,38 @@ impl<T: Wire> ErasedWire for T {
     }
 }
 
+/// Hashes keys that are well mixed already (content hashes) or small and dense (nodes), where the standard hash
+/// would cost more than the look-up.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct KeyHasher(u64);
+
+/// For maps keyed by content hashes or nodes. Nothing may depend on their order.
+pub(crate) type KeyHasherBuilder = std::hash::BuildHasherDefault<KeyHasher>;
+
+impl std::hash::Hasher for KeyHasher {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|byte| self.write_u64(u64::from(*byte)));
+    }
+
+    fn write_u32(&mut self, key: u32) {
+        self.write_u64(u64::from(key));
+    }
+
+    fn write_u64(&mut self, key: u64) {
+        // 2^64 divided by the golden ratio: neighbouring keys end up far apart.
+        self.0 = (self.0.rotate_left(5) ^ key).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    }
+
+    fn write_u128(&mut self, key: u128) {
+        let [low, high] = [key, key >> 64].map(|half| u64::try_from(half & u128::from(u64::MAX)).unwrap_or(0));
+        self.write_u64(low ^ high);
+    }
+}
+
 /// An immutable value with its type and content hash. Cloning shares the content.
 #[derive(Clone)]
 pub struct Value {
@@ -202,7 +244,7 @@ impl Value {
 
 impl fmt::Debug for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}({})", self.wire.name, self.summary())
+        write!(f, "{}({})", self.wire, self.summary())
     }
 }
 

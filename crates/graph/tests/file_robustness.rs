@@ -101,7 +101,10 @@ fn deep_nesting_is_refused_without_overflowing_the_stack() {
             ] {
                 let error = file::from_text(&catalogue, &text).map(|_| ()).unwrap_err().to_string();
                 if text != nested {
-                    assert!(error.contains("brackets are nested too deeply to be read"), "{depth} {open}: {error:.200}");
+                    assert!(
+                        error.contains("brackets are nested too deeply to be read"),
+                        "{depth} {open}: {error:.200}"
+                    );
                 }
             }
             assert!(file::parse_literal(&nested).is_err());
@@ -117,7 +120,10 @@ fn moderate_nesting_is_kept() {
     for depth in 40..140 {
         let nested = format!("{}1{}", "[".repeat(depth), "]".repeat(depth));
         assert_settles(format!("(version: 1, nodes: {{}}, x: {nested})").as_bytes());
-        assert_settles(format!("(version: 1, nodes: {{\"a\": (kind: {nested}, x: {nested}, inputs: {{\"y\": {nested}}})}})").as_bytes());
+        assert_settles(
+            format!("(version: 1, nodes: {{\"a\": (kind: {nested}, x: {nested}, inputs: {{\"y\": {nested}}})}})")
+                .as_bytes(),
+        );
     }
     let nested = format!("{}1{}", "[".repeat(50), "]".repeat(50));
     let loaded = file::from_text(&catalogue, &format!("(version: 1, nodes: {{}}, x: {nested})")).unwrap();
@@ -217,10 +223,55 @@ fn a_long_stroke_with_slashes_in_its_name_does_not_crawl() {
 
 fn fragment() -> impl Strategy<Value = String> {
     let words = [
-        "(", ")", "{", "}", "[", "]", ",", ":", "\"", "\\", "/", "//", "/*", "*/", "#", "r", "r#", "b'", "'", "\n", " ",
-        "version", "nodes", "layout", "notes", "kind", "note", "inputs", "1", "0.5", "1e9", "-", "\"a\"", "\"add\"",
-        "\"b\"", "Link(\"a.sum\")", "Text(\"x\")", "Strokes([(points: [(0, 1)])])", "Vector(1, 2, 3)", "é", "\u{feff}",
-        "\u{2028}", "version: 1,", "nodes: {", "\"a\": (kind: \"add\"", "inputs: {", "\"a\": 1", "})", "#![enable(",
+        "(",
+        ")",
+        "{",
+        "}",
+        "[",
+        "]",
+        ",",
+        ":",
+        "\"",
+        "\\",
+        "/",
+        "//",
+        "/*",
+        "*/",
+        "#",
+        "r",
+        "r#",
+        "b'",
+        "'",
+        "\n",
+        " ",
+        "version",
+        "nodes",
+        "layout",
+        "notes",
+        "kind",
+        "note",
+        "inputs",
+        "1",
+        "0.5",
+        "1e9",
+        "-",
+        "\"a\"",
+        "\"add\"",
+        "\"b\"",
+        "Link(\"a.sum\")",
+        "Text(\"x\")",
+        "Strokes([(points: [(0, 1)])])",
+        "Vector(1, 2, 3)",
+        "é",
+        "\u{feff}",
+        "\u{2028}",
+        "version: 1,",
+        "nodes: {",
+        "\"a\": (kind: \"add\"",
+        "inputs: {",
+        "\"a\": 1",
+        "})",
+        "#![enable(",
     ];
     prop_oneof![9 => prop::sample::select(words.to_vec()).prop_map(str::to_owned), 1 => any::<String>()]
 }

@@ -25,6 +25,7 @@ fn kinds() -> Vec<NodeKind> {
         curve::mirror::kind(),
         curve::pick::kind(),
         curve::resample::kind(),
+        curve::smooth::kind(),
         curve::sort::kind(),
         curve::transform::kind(),
         deform::deform_by_cross_section::kind(),

@@ -5,6 +5,7 @@ mod closest;
 mod correspondence;
 mod polyline;
 mod resample;
+mod smoothing;
 mod spline;
 mod spline_length;
 
@@ -13,5 +14,7 @@ pub use closest::{Closest, closest};
 pub use correspondence::{AxisSource, Decision, SortError, SortOptions, Sorted, sort};
 pub use polyline::{Curve, CurveError};
 pub use resample::{Amount, MAX_POINTS, ResampleError, Resampling, resample};
+pub(crate) use smoothing::smoothed;
+pub use smoothing::{SmoothError, smooth};
 pub use spline::{CubicSpline, SplineError, chord_parameters, uniform_parameters};
 pub use spline_length::SplineLength;

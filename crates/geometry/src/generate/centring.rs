@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::smoothing::smoothed;
+use crate::curve::smoothed;
 
 /// Share of the rails' length below which depth does not follow the other view's outline.
 const WAVE: f64 = 0.38;

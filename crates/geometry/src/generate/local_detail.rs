@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::smoothing::smoothed;
 use super::{GenerateError, Weights};
 use crate::beam::{EndCondition, OpenBeam, OpenValues, Stiffness};
+use crate::curve::smoothed;
 
 /// Share of the wavelength over which detail fades out towards the ends of a rail: there the smooth curve has nothing to
 /// lean on, and the roundness of a crown would count as detail.

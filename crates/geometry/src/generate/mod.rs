@@ -16,7 +16,6 @@ mod feet;
 mod local_detail;
 mod pace;
 mod patch;
-mod smoothing;
 mod two_views;
 mod view_plane;
 

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::graph::NodeId;
+use crate::node_kind::NodeKind;
 use crate::report::Report;
 use crate::value::{Value, Wire};
 
@@ -64,7 +65,8 @@ pub struct Outcome {
 #[derive(Clone, Debug, Default)]
 pub struct Evaluation {
     pub(crate) outcomes: BTreeMap<NodeId, Outcome>,
-    pub(crate) output_names: BTreeMap<NodeId, Vec<String>>,
+    /// The kinds of the nodes that were asked for.
+    pub(crate) kinds: BTreeMap<NodeId, Arc<NodeKind>>,
     /// Time of the whole evaluation.
     pub duration: Duration,
     /// Whether it was cancelled before every target had its result.
@@ -92,7 +94,7 @@ impl Evaluation {
 
     /// One output of a node that was asked for, as `T`.
     pub fn value<T: Wire>(&self, node: NodeId, output: &str) -> Option<&T> {
-        let place = self.output_names.get(&node)?.iter().position(|name| name == output)?;
+        let (place, _) = self.kinds.get(&node)?.find_output(output)?;
         self.values(node)?.get(place)?.get()
     }
 

@@ -2,8 +2,7 @@
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use crate::catalogue::Catalogue;
 use crate::evaluate::evaluation::{Evaluation, Outcome, OutcomeState};
@@ -12,7 +11,7 @@ use crate::evaluate::plan::{Found, Plan, Planner, gather, key};
 use crate::evaluate::run::{Ended, Runner};
 use crate::evaluate::{CancelToken, Event, EventKind, Events};
 use crate::graph::{Graph, Node, NodeId, Source};
-use crate::value::ContentHash;
+use crate::value::{ContentHash, KeyHasherBuilder};
 
 /// How to evaluate.
 #[derive(Clone, Debug)]
@@ -127,9 +126,10 @@ impl Evaluator {
             base: &request.base,
             cancel: &request.cancel,
             events: request.events,
+            silence: Default::default(),
         };
         let ended = runner.run(self.pool.as_ref());
-        self.conclude(graph, request, &plan, ended, begun)
+        self.conclude(graph, request, plan, ended, begun)
     }
 
     /// Marks what changed since the last evaluation, and everything behind it, as stale.
@@ -225,46 +225,53 @@ impl Evaluator {
         &mut self,
         graph: &Graph,
         request: &Request<'_>,
-        plan: &Plan,
-        ended: Vec<Ended>,
+        mut plan: Plan,
+        mut ended: Vec<Ended>,
         begun: Instant,
     ) -> Evaluation {
         let mut evaluation = Evaluation::default();
-        let targets: HashSet<NodeId> = request.targets.iter().copied().collect();
-        for id in &plan.order {
-            let (Some(node), Some(found)) = (graph.node(*id), plan.found.get(id)) else { continue };
-            let wanted = targets.contains(id);
+        let targets: HashSet<NodeId, KeyHasherBuilder> = request.targets.iter().copied().collect();
+        let mut outcomes = Vec::with_capacity(plan.order.len());
+        let mut kinds = Vec::new();
+        for id in plan.order {
+            let (Some(node), Some(found)) = (graph.node(id), plan.found.remove(&id)) else { continue };
+            let wanted = targets.contains(&id);
             let (state, ran, duration) = match found {
                 Found::Known(key, entry) => {
-                    self.slots[id.index()].key = Some(*key);
-                    (state_of(entry, wanted), false, entry.duration)
+                    self.slots[id.index()].key = Some(key);
+                    (state_of(&entry, wanted), false, entry.duration)
                 }
-                Found::Failed(failure) => (OutcomeState::Failed(failure.clone()), false, Default::default()),
-                Found::Waiting(on) => (OutcomeState::Waiting(on.clone()), false, Default::default()),
-                Found::Scheduled(step) => match &ended[*step] {
-                    Ended::Entry { key, entry, ran } => {
-                        self.slots[id.index()].key = *key;
-                        (state_of(entry, wanted), *ran, entry.duration)
+                Found::Failed(failure) => (OutcomeState::Failed(failure), false, Duration::ZERO),
+                Found::Waiting(on) => (OutcomeState::Waiting(on), false, Duration::ZERO),
+                Found::Scheduled(step) => match std::mem::replace(&mut ended[step], Ended::Cancelled) {
+                    Ended::Done { key, values, report, duration, ran } => {
+                        self.slots[id.index()].key = Some(key);
+                        (OutcomeState::Done { values, report }, ran, duration)
                     }
-                    Ended::Waiting(on) => (OutcomeState::Waiting(on.clone()), false, Default::default()),
+                    Ended::Failed { key, failure, duration, ran } => {
+                        self.slots[id.index()].key = key;
+                        (OutcomeState::Failed(failure), ran, duration)
+                    }
+                    Ended::Waiting(on) => (OutcomeState::Waiting(on), false, Duration::ZERO),
                     Ended::Cancelled => {
                         evaluation.cancelled = true;
-                        (OutcomeState::Cancelled, false, Default::default())
+                        (OutcomeState::Cancelled, false, Duration::ZERO)
                     }
                 },
             };
             if wanted && let Some(kind) = &node.kind {
-                evaluation.output_names.insert(*id, kind.outputs().iter().map(|o| o.name.clone()).collect());
+                kinds.push((id, kind.clone()));
             }
-            let outcome = Outcome { name: node.name.clone(), kind: node.kind_name.clone(), state, ran, duration };
-            evaluation.outcomes.insert(*id, outcome);
+            outcomes.push((id, Outcome { name: node.name.clone(), kind: node.kind_name.clone(), state, ran, duration }));
         }
+        evaluation.outcomes = outcomes.into_iter().collect();
+        evaluation.kinds = kinds.into_iter().collect();
         evaluation.duration = begun.elapsed();
         evaluation
     }
 }
 
-fn state_of(entry: &Arc<Entry>, wanted: bool) -> OutcomeState {
+fn state_of(entry: &Entry, wanted: bool) -> OutcomeState {
     match &entry.result {
         Ok(values) => OutcomeState::Done { values: wanted.then(|| values.clone()), report: entry.report.clone() },
         Err(failure) => OutcomeState::Failed(failure.clone()),

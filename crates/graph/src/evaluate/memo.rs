@@ -7,7 +7,7 @@ use lru::LruCache;
 
 use crate::evaluate::Failure;
 use crate::report::Report;
-use crate::value::{ContentHash, Value};
+use crate::value::{ContentHash, KeyHasherBuilder, Value};
 
 /// What a run gave.
 #[derive(Debug)]
@@ -34,13 +34,19 @@ pub(crate) struct Memo {
 
 #[derive(Debug)]
 struct Inner {
-    entries: LruCache<ContentHash, Arc<Entry>>,
+    entries: LruCache<ContentHash, Arc<Entry>, KeyHasherBuilder>,
     bytes: usize,
 }
 
 impl Memo {
     pub(crate) fn new(budget: usize) -> Self {
-        Self { inner: Mutex::new(Inner { entries: LruCache::unbounded(), bytes: 0 }), budget }
+        Self {
+            inner: Mutex::new(Inner {
+                entries: LruCache::unbounded_with_hasher(KeyHasherBuilder::default()),
+                bytes: 0,
+            }),
+            budget,
+        }
     }
 
     fn lock(&self) -> MutexGuard<'_, Inner> {

@@ -5,13 +5,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::catalogue::{Catalogue, Conversion};
+use crate::catalogue::{Catalogue, ConvertFn};
 use crate::evaluate::memo::{Entry, Memo};
 use crate::evaluate::{CancelToken, Failure};
 use crate::graph::{Graph, Node, NodeId, Source};
 use crate::node_kind::NodeKind;
 use crate::ports::{NodeError, Ports};
-use crate::value::{ContentHash, Value};
+use crate::value::{ContentHash, KeyHasherBuilder, Value};
 
 /// Where an input's value comes from.
 pub(crate) enum Supply {
@@ -20,9 +20,9 @@ pub(crate) enum Supply {
     /// A literal or default.
     Value(Value),
     /// An output of a scheduled node.
-    Scheduled { step: usize, output: usize, conversion: Option<Conversion> },
+    Scheduled { step: usize, output: usize, conversion: Option<Arc<ConvertFn>> },
     /// An output that is known already.
-    Known { entry: Arc<Entry>, output: usize, conversion: Option<Conversion> },
+    Known { entry: Arc<Entry>, output: usize, conversion: Option<Arc<ConvertFn>> },
 }
 
 /// A node that may have to run.
@@ -32,8 +32,8 @@ pub(crate) struct Step {
     pub(crate) supplies: Vec<Supply>,
     /// Steps that take a value from this one, one entry per step.
     pub(crate) dependents: Vec<usize>,
-    /// Number of different steps it takes values from.
-    pub(crate) waits_for: usize,
+    /// Steps that it takes values from, each once.
+    pub(crate) sources: Vec<usize>,
     /// Whether its values are wanted after the evaluation.
     pub(crate) is_target: bool,
 }
@@ -55,7 +55,7 @@ pub(crate) enum Found {
 #[derive(Default)]
 pub(crate) struct Plan {
     pub(crate) steps: Vec<Step>,
-    pub(crate) found: HashMap<NodeId, Found>,
+    pub(crate) found: HashMap<NodeId, Found, KeyHasherBuilder>,
     /// The nodes of `found`, in the order in which they were looked at.
     pub(crate) order: Vec<NodeId>,
 }
@@ -147,7 +147,7 @@ impl Planner<'_> {
             kind: kind.clone(),
             supplies,
             dependents: Vec::new(),
-            waits_for: sources.len(),
+            sources,
             is_target: false,
         });
         Found::Scheduled(step)
@@ -259,7 +259,7 @@ pub(crate) fn gather(
             return Err(fail("its value was not there in time; this is a mistake in the engine".to_owned()));
         };
         if let Some(conversion) = conversion {
-            value = (conversion.convert)(&value).map_err(fail)?;
+            value = conversion(&value).map_err(fail)?;
         }
         if let Some(reason) = spec.refuses_value(&value) {
             return Err(fail(reason));

@@ -4,24 +4,36 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use crate::evaluate::memo::{Entry, Memo};
 use crate::evaluate::plan::{Plan, Step, Supply, blame_name, failure, gather, key, panic_message};
 use crate::evaluate::{CancelToken, Event, EventKind, Events, Failure};
 use crate::graph::Graph;
 use crate::ports::{NodeError, Ports};
+use crate::report::Report;
 use crate::value::{ContentHash, Value};
 
 /// What became of a step.
-#[derive(Clone)]
 pub(crate) enum Ended {
-    /// It has a result, good or bad.
-    Entry { key: Option<ContentHash>, entry: Arc<Entry>, ran: bool },
+    /// It has a result. Its values are there only if it is a target: of the others the memo decides what stays.
+    Done { key: ContentHash, values: Option<Arc<[Value]>>, report: Arc<Report>, duration: Duration, ran: bool },
+    /// It failed; with a key where the failure is remembered.
+    Failed { key: Option<ContentHash>, failure: Failure, duration: Duration, ran: bool },
     /// These nodes failed before it.
     Waiting(Vec<String>),
     /// It was stopped, or never began.
     Cancelled,
+}
+
+impl Ended {
+    fn of(key: ContentHash, entry: &Entry, ran: bool) -> Self {
+        let duration = entry.duration;
+        match &entry.result {
+            Ok(values) => Self::Done { key, values: Some(values.clone()), report: entry.report.clone(), duration, ran },
+            Err(failure) => Self::Failed { key: Some(key), failure: failure.clone(), duration, ran },
+        }
+    }
 }
 
 pub(crate) struct Runner<'a> {
@@ -31,6 +43,8 @@ pub(crate) struct Runner<'a> {
     pub(crate) base: &'a Path,
     pub(crate) cancel: &'a CancelToken,
     pub(crate) events: &'a dyn Events,
+    /// The report of nodes that have nothing to say.
+    pub(crate) silence: Arc<Report>,
 }
 
 /// Working state of one step. Values are dropped as soon as the last step that takes them has run.
@@ -54,7 +68,7 @@ impl Runner<'_> {
             .steps
             .iter()
             .map(|step| State {
-                pending: AtomicUsize::new(step.waits_for),
+                pending: AtomicUsize::new(step.sources.len()),
                 takers: AtomicUsize::new(step.dependents.len()),
                 values: Mutex::new(None),
                 ended: Mutex::new(None),
@@ -63,7 +77,7 @@ impl Runner<'_> {
         match pool.filter(|_| !self.is_chain()) {
             None => (0..states.len()).for_each(|step| self.run_step(&states, step)),
             Some(pool) => pool.scope(|scope| {
-                for (step, _) in self.plan.steps.iter().enumerate().filter(|(_, s)| s.waits_for == 0) {
+                for (step, _) in self.plan.steps.iter().enumerate().filter(|(_, s)| s.sources.is_empty()) {
                     let states = &states;
                     scope.spawn(move |scope| self.run_from(states, step, scope));
                 }
@@ -75,7 +89,7 @@ impl Runner<'_> {
     /// Whether no two steps could ever run at the same time, so that a thread pool has nothing to offer.
     fn is_chain(&self) -> bool {
         let steps = &self.plan.steps;
-        steps.iter().filter(|s| s.waits_for == 0).count() <= 1 && steps.iter().all(|s| s.dependents.len() <= 1)
+        steps.iter().filter(|s| s.sources.is_empty()).count() <= 1 && steps.iter().all(|s| s.dependents.len() <= 1)
     }
 
     fn run_from<'s>(&'s self, states: &'s [State], mut step: usize, scope: &rayon::Scope<'s>) {
@@ -106,42 +120,26 @@ impl Runner<'_> {
 
     fn run_step(&self, states: &[State], index: usize) {
         let step = &self.plan.steps[index];
-        let ended = self.result(states, step);
-        match &ended {
-            Ended::Entry { entry, ran, .. } => {
-                match (&entry.result, ran) {
-                    (Err(failure), _) => self.emit(step, EventKind::Failed(failure)),
-                    (Ok(_), true) => self.emit(step, EventKind::Finished(entry.duration)),
-                    (Ok(_), false) => self.emit(step, EventKind::Hit),
+        let mut ended = self.result(states, step);
+        match &mut ended {
+            Ended::Done { values, duration, ran, .. } => {
+                self.emit(step, if *ran { EventKind::Finished(*duration) } else { EventKind::Hit });
+                if !step.dependents.is_empty() {
+                    locked(&states[index].values).clone_from(values);
                 }
-                if let Ok(values) = &entry.result
-                    && !step.dependents.is_empty()
-                {
-                    *locked(&states[index].values) = Some(values.clone());
+                if !step.is_target {
+                    *values = None;
                 }
             }
+            Ended::Failed { failure, .. } => self.emit(step, EventKind::Failed(failure)),
             Ended::Waiting(on) => self.emit(step, EventKind::Waiting(on)),
             Ended::Cancelled => self.emit(step, EventKind::Cancelled),
         }
-        *locked(&states[index].ended) = Some(self.slimmed(step, ended));
-        let mut sources: Vec<usize> = step.supplies.iter().filter_map(scheduled_source).collect();
-        sources.sort_unstable();
-        sources.dedup();
-        for source in sources {
+        *locked(&states[index].ended) = Some(ended);
+        for &source in &step.sources {
             if states[source].takers.fetch_sub(1, Ordering::AcqRel) == 1 {
                 *locked(&states[source].values) = None;
             }
-        }
-    }
-
-    /// Without the values, where nobody asks for them after the evaluation: the memo decides what stays.
-    fn slimmed(&self, step: &Step, ended: Ended) -> Ended {
-        match ended {
-            Ended::Entry { key, entry, ran } if !step.is_target && entry.result.is_ok() => {
-                let slim = Entry { result: Ok(Arc::default()), report: entry.report.clone(), duration: entry.duration };
-                Ended::Entry { key, entry: Arc::new(slim), ran }
-            }
-            other => other,
         }
     }
 
@@ -155,11 +153,7 @@ impl Runner<'_> {
         let values = |source: usize, output: usize| {
             locked(&states[source].values).as_ref().and_then(|values| values.get(output).cloned())
         };
-        let failed = |failure: Failure| Ended::Entry {
-            key: None,
-            entry: Arc::new(Entry { result: Err(failure), report: Arc::default(), duration: Default::default() }),
-            ran: false,
-        };
+        let failed = |failure| Ended::Failed { key: None, failure, duration: Duration::ZERO, ran: false };
         let inputs = match gather(&step.kind, &step.supplies, values) {
             Ok(inputs) => inputs,
             Err(failure) => return failed(failure),
@@ -170,7 +164,7 @@ impl Runner<'_> {
             Err(failure) => return failed(failure),
         };
         if let Some(entry) = self.memo.get(key) {
-            return Ended::Entry { key: Some(key), entry, ran: false };
+            return Ended::of(key, &entry, false);
         }
         self.emit(step, EventKind::Started);
         let begun = Instant::now();
@@ -185,12 +179,16 @@ impl Runner<'_> {
             // A node may answer a cancellation with an error of its own; that says nothing about its inputs.
             Err(_) if self.cancel.is_cancelled() => return Ended::Cancelled,
             Err(NodeError::Cancelled) => return Ended::Cancelled,
-            Err(NodeError::Failed { input, message }) => (Err(failure(&step.kind, input, message)), Arc::default()),
+            Err(NodeError::Failed { input, message }) => {
+                (Err(failure(&step.kind, input, message)), self.silence.clone())
+            }
+            // Most nodes say nothing; they share one empty report.
+            Ok((values, report)) if report.is_empty() => (Ok(values.into()), self.silence.clone()),
             Ok((values, report)) => (Ok(values.into()), Arc::new(report)),
         };
         let entry = Arc::new(Entry { result, report, duration });
         self.memo.insert(key, entry.clone());
-        Ended::Entry { key: Some(key), entry, ran: true }
+        Ended::of(key, &entry, true)
     }
 
     fn stopped_by_sources(&self, states: &[State], step: &Step) -> Option<Ended> {
@@ -198,13 +196,13 @@ impl Runner<'_> {
         let mut cancelled = false;
         for source in step.supplies.iter().filter_map(scheduled_source) {
             match &*locked(&states[source].ended) {
-                Some(Ended::Entry { entry, .. }) if entry.result.is_err() => {
+                Some(Ended::Failed { .. }) => {
                     let name = self.graph.node(self.plan.steps[source].node).map_or("", |node| node.name());
                     blame_name(&mut waiting, name);
                 }
                 Some(Ended::Waiting(on)) => on.iter().for_each(|name| blame_name(&mut waiting, name)),
                 Some(Ended::Cancelled) => cancelled = true,
-                Some(Ended::Entry { .. }) | None => {}
+                Some(Ended::Done { .. }) | None => {}
             }
         }
         if !waiting.is_empty() {
@@ -221,7 +219,7 @@ impl Runner<'_> {
         step: &Step,
         inputs: &[Option<Value>],
         told_to_stop: &AtomicBool,
-    ) -> Result<(Vec<Value>, crate::Report), NodeError> {
+    ) -> Result<(Vec<Value>, Report), NodeError> {
         let kind = &*step.kind;
         let Some(run) = kind.evaluate_fn() else {
             return Err(NodeError::new(format!("the node kind \"{}\" does not say what it does", kind.name())));

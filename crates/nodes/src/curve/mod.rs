@@ -4,5 +4,6 @@ pub(crate) mod join;
 pub(crate) mod mirror;
 pub(crate) mod pick;
 pub(crate) mod resample;
+pub(crate) mod smooth;
 pub(crate) mod sort;
 pub(crate) mod transform;

@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# Draws the pictures of the README from the saved graphs.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+cargo build --release
+maquette="${CARGO_TARGET_DIR:-target}/release/maquette"
+mkdir -p docs/pictures
+draw() { "$maquette" render "graphs/$1.ron" -o "docs/pictures/$2.png" --size "$3" --quiet "${@:4}"; }
+draw vest vest-curves 560x640 --curves
+draw vest vest 560x640
+draw vest vest-wireframe 560x640 --wireframe
+draw head head 480x640
+draw head head-curves 480x640 --curves --view side
+draw neck neck 560x480 --curves
+draw leg leg 400x640 --curves
