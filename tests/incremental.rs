@@ -44,11 +44,9 @@ fn a_changed_parameter_reruns_its_node_and_what_depends_on_it() {
     let behind = [
         "all curves",
         "body",
-        "both sides",
         "drawn curves",
         "even curves",
         "front rail",
-        "left rails",
         "shaped",
         "sketch lines",
         "sorted",

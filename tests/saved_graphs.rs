@@ -138,7 +138,7 @@ fn the_vest_passes_through_its_five_rails_its_hem_its_neckline_and_its_chest() {
     assert_eq!((vest.positions().len(), vest.polygon_count()), (7600, 7520));
     assert_fair("vest", &vest, false, 25.0);
     let (low, high) = bounds(&vest);
-    assert!(low.distance(DVec3::new(-0.1686, 0.93, -0.0836)) < 2e-3, "{low}");
+    assert!(low.distance(DVec3::new(-0.1690, 0.93, -0.0927)) < 1e-4, "{low}");
     assert!(high.distance(DVec3::new(0.1686, 1.4498, 0.1490)) < 2e-3, "{high}");
     // Left and right are mirror images.
     assert!((low.x + high.x).abs() < 1e-4, "{} {}", low.x, high.x);
@@ -147,12 +147,15 @@ fn the_vest_passes_through_its_five_rails_its_hem_its_neckline_and_its_chest() {
     let closed = curves(&saved, &evaluation, "sorted", "closed").to_vec();
     let names: Vec<_> = rails.iter().map(Curve::name).collect();
     assert_eq!(names, ["left back mirrored", "left side mirrored", "front", "left side", "left back"]);
-    // The boundaries are points of the mesh; between them its edges cut the curve's bends, by less than 0.1 mm.
-    for boundary in &closed {
-        assert!(farthest(&vest, boundary) < 1e-4, "{}: {}", boundary.name(), farthest(&vest, boundary));
+    // The mesh's first and last ring lie on the drawn boundaries; between them edges 11 mm long cut the bends.
+    let ring = |first: usize| &vest.positions()[first..first + 80];
+    for (boundary, ring) in closed.iter().zip([ring(0), ring(7600 - 80)]) {
+        let off = ring.iter().map(|p| closest(boundary, *p).distance).fold(0.0, f64::max);
+        assert!(off < 1e-12, "{}: {off}", boundary.name());
+        assert!(farthest(&vest, boundary) < 4e-4, "{}: {}", boundary.name(), farthest(&vest, boundary));
     }
     let chest = &curves(&saved, &evaluation, "even chest", "curves")[0];
-    assert!(farthest(&vest, chest) < 2e-4, "chest: {}", farthest(&vest, chest));
+    assert!(farthest(&vest, chest) < 8e-4, "chest: {}", farthest(&vest, chest));
     let chest_section = sections(&saved, &evaluation, "shaped").section(27);
     let off = chest_section.iter().map(|p| closest(chest, *p).distance).fold(0.0, f64::max);
     assert!(off < 1e-12, "the section is on the contour: {off}");
@@ -164,8 +167,8 @@ fn the_vest_passes_through_its_five_rails_its_hem_its_neckline_and_its_chest() {
     let plain = mesh(&saved, &evaluation, "surface");
     assert_fair("vest without its chest", plain, false, 25.0);
     for rail in &rails {
-        // Rails were drawn up to 1.7 mm from the tilted neckline, and are bent to meet it.
-        assert!(farthest(plain, rail) < 2e-3, "{}: {}", rail.name(), farthest(plain, rail));
+        // They were drawn to within 0.2 mm of hem and neckline, and are bent to meet them.
+        assert!(farthest(plain, rail) < 1.5e-4, "{}: {}", rail.name(), farthest(plain, rail));
     }
     let stack = sections(&saved, &evaluation, "body");
     assert_eq!(stack.rails().len(), 5);
@@ -213,7 +216,7 @@ fn the_head_is_closed_smooth_and_within_its_silhouettes() {
 
 #[test]
 fn the_neck_is_open_smooth_and_within_its_silhouettes() {
-    let (neck, sections) = assert_two_views("neck", false, 12.0, 1e-3);
+    let (neck, sections) = assert_two_views("neck", false, 12.0, 1.5e-3);
     assert_eq!((sections.len(), neck.polygon_count()), (24, 23 * 2 * 64));
     assert!(ripple(&sections).sign_changes <= 3, "{:?}", ripple(&sections));
 }

@@ -7,12 +7,13 @@ use petgraph::stable_graph::{NodeIndex, StableDiGraph};
 use petgraph::visit::EdgeRef;
 
 use crate::graph::NodeId;
+use crate::value::KeyHasherBuilder;
 
 /// Links between nodes, one edge per link, labelled with the input it enters. Always acyclic.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Topology {
     links: StableDiGraph<NodeId, String>,
-    places: HashMap<NodeId, NodeIndex>,
+    places: HashMap<NodeId, NodeIndex, KeyHasherBuilder>,
 }
 
 impl Topology {
@@ -52,7 +53,7 @@ impl Topology {
         // Every cycle lies within one strongly connected component.
         let components = petgraph::algo::kosaraju_scc(&together);
         let members = components.iter().enumerate().flat_map(|(c, nodes)| nodes.iter().map(move |node| (*node, c)));
-        let component: HashMap<NodeIndex, usize> = members.collect();
+        let component: HashMap<NodeIndex, usize, KeyHasherBuilder> = members.collect();
         let component = |id: NodeId| place(id).and_then(|place| component.get(&place).copied());
         links.map(|(from, to)| from != to && component(from) != component(to)).collect()
     }

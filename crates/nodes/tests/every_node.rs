@@ -39,7 +39,7 @@ fn four_rails() -> Vec<Curve> {
 }
 
 fn tube() -> Sections {
-    let rows = (0..12).map(|k| circle("", 1.0, f64::from(k) / 4.0).points().to_vec()).collect();
+    let rows = (0..60).map(|k| circle("", 1.0, f64::from(k) / 24.0).points().to_vec()).collect();
     Sections::new(rows, true, vec![0, 12, 24, 36]).unwrap()
 }
 

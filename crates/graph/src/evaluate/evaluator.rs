@@ -262,7 +262,8 @@ impl Evaluator {
             if wanted && let Some(kind) = &node.kind {
                 kinds.push((id, kind.clone()));
             }
-            outcomes.push((id, Outcome { name: node.name.clone(), kind: node.kind_name.clone(), state, ran, duration }));
+            outcomes
+                .push((id, Outcome { name: node.name.clone(), kind: node.kind_name.clone(), state, ran, duration }));
         }
         evaluation.outcomes = outcomes.into_iter().collect();
         evaluation.kinds = kinds.into_iter().collect();

@@ -225,8 +225,8 @@ impl Runner<'_> {
             return Err(NodeError::new(format!("the node kind \"{}\" does not say what it does", kind.name())));
         };
         let progress = |fraction: f64| {
-            // `max` first: it turns NaN into 0, where `clamp` would hand it on.
-            self.emit(step, EventKind::Progress(fraction.max(0.0).min(1.0)));
+            let done = if fraction.is_nan() { 0.0 } else { fraction.clamp(0.0, 1.0) };
+            self.emit(step, EventKind::Progress(done));
             let stop = self.cancel.is_cancelled();
             if stop {
                 told_to_stop.store(true, Ordering::Relaxed);

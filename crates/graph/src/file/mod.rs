@@ -21,8 +21,9 @@
 //! Nodes stand in the order in which they were added, inputs in the order of their kind; an input at its default is
 //! not written. Numbers, integers and booleans are bare, everything else names its type: `Link("node.output")`,
 //! `Text("..")`, `Choice("..")`, `Vector(x, y, z)`, `Colour(r, g, b, a)`, `File("..")`, `Strokes([..])`. What this
-//! version does not know (kinds, inputs, fields) is reported with its place and written back as it was. Comments are
-//! not kept: use `notes` for the graph and `note` for a node.
+//! version does not know (kinds, inputs, fields) or can't read is reported with its place and written back as it was.
+//! Not kept are comments (use `notes` for the graph and `note` for a node), attributes, and all but the last of several
+//! values at one input or of several places of one node.
 
 mod link;
 mod literal_text;

@@ -1,6 +1,6 @@
 //! From text to a graph, with everything that is wrong said at once.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use ron::value::RawValue;
 
@@ -12,6 +12,7 @@ use crate::file::syntax::{attributes, syntax_error};
 use crate::file::tree::{FileTree, NodeTree, trimmed};
 use crate::file::{FORMAT_VERSION, FileError, Problem, Severity};
 use crate::graph::{Graph, GraphError, NodeId, Source};
+use crate::value::KeyHasherBuilder;
 
 /// A graph as it was read.
 #[derive(Debug)]
@@ -20,13 +21,13 @@ pub struct Loaded {
     pub graph: Graph,
     /// Everything that is wrong, in the order of the file.
     pub problems: Vec<Problem>,
-    places: HashMap<NodeId, Place>,
+    places: HashMap<NodeId, Place, KeyHasherBuilder>,
 }
 
 #[derive(Debug, Default)]
 struct Place {
     at: (usize, usize),
-    inputs: HashMap<String, (usize, usize)>,
+    inputs: BTreeMap<String, (usize, usize)>,
 }
 
 impl Loaded {
@@ -76,7 +77,7 @@ pub fn from_text(catalogue: &Catalogue, text: &str) -> Result<Loaded, FileError>
         graph: Graph::new(),
         suggestions: Suggestions::default(),
         problems: Vec::new(),
-        places: HashMap::new(),
+        places: HashMap::default(),
         links: Vec::new(),
         kept_as: HashMap::new(),
         next_number: HashMap::new(),
@@ -93,7 +94,7 @@ pub(super) struct Reader<'a> {
     pub(super) graph: Graph,
     pub(super) suggestions: Suggestions,
     problems: Vec<Problem>,
-    places: HashMap<NodeId, Place>,
+    places: HashMap<NodeId, Place, KeyHasherBuilder>,
     links: Vec<PendingLink<'a>>,
     /// Nodes whose names can't be names, by what the file calls them.
     kept_as: HashMap<String, NodeId>,
@@ -231,7 +232,7 @@ impl<'a> Reader<'a> {
         let spelled = self.field(tree.kind, Some(&wanted), "kind", &mut kept);
         let kind = spelled.clone().unwrap_or_default();
         let Some(id) = self.insert(&kind, &wanted, name_at) else { return };
-        self.places.insert(id, Place { at: self.lines.place(name_at), inputs: HashMap::new() });
+        self.places.insert(id, Place { at: self.lines.place(name_at), inputs: BTreeMap::new() });
         if spelled.is_some() && self.catalogue.kind(&kind).is_none() {
             let at = tree.kind.map_or(name_at, |raw| self.offset(trimmed(raw)));
             let remedy = match self.catalogue.suggest(&kind) {
