@@ -70,7 +70,7 @@ fn vest_changes(c: &mut Criterion) {
         Some(Source::Literal { literal: Literal::Strokes(strokes), .. }) => strokes.clone(),
         _ => Vec::new(),
     };
-    changing(c, "vest, one rail moved", load("vest"), "vest", |saved, step| {
+    changing(c, "vest, one rail moved (published: 90 ms a detail)", load("vest"), "vest", |saved, step| {
         let node = saved.node("front rail");
         let mut moved = strokes(saved, "front rail");
         moved[0].points[4].x += step;

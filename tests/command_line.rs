@@ -130,7 +130,7 @@ fn values_are_set_by_the_type_of_their_port() {
         said["results"][0]["faces"].as_u64().unwrap()
     };
     let plain = faces(&[]);
-    assert_eq!(faces(&["surface.rows=4"]), 2 * plain);
+    assert_eq!(faces(&["surface.rows=4"]), 4 * plain);
     assert!(faces(&["surface.cap-start=flat", "surface.cap-end=Choice(\"flat\")"]) > plain);
     assert_eq!(faces(&["body.k_s=0", "vest.colour=1,0.5,0", "vest.double-sided=false"]), plain);
 

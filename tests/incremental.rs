@@ -45,7 +45,7 @@ fn a_changed_parameter_reruns_its_node_and_what_depends_on_it() {
         "all curves",
         "body",
         "drawn curves",
-        "even curves",
+        "even front rail",
         "front rail",
         "shaped",
         "sketch lines",
