@@ -1,6 +1,6 @@
 //! The detail generator and the whole vest, beside the figures the thesis gives: 0.09 s a detail, 0.17 s a primitive
 //! (Python in Houdini on a 3.2 GHz Xeon, section 6.5). Run with `cargo bench --bench pipeline`.
-#![allow(missing_docs, reason = "a benchmark has no users")]
+#![allow(missing_docs, clippy::expect_used, reason = "a benchmark has no users, and stops where it is wrong")]
 
 use std::hint::black_box;
 use std::path::Path;

@@ -1,4 +1,10 @@
 //! The command as a person or a build farm meets it: outputs, messages, exit codes.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::disallowed_methods,
+    reason = "a test that panics fails, and its files are its own"
+)]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

@@ -1,4 +1,10 @@
 //! Imports go one way: what ARCHITECTURE.md says, read off `cargo tree`.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::disallowed_methods,
+    reason = "a test that panics fails, and its files are its own"
+)]
 
 use std::process::Command;
 

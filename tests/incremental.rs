@@ -1,4 +1,10 @@
 //! What re-runs when something changes in the vest, and that results do not depend on runs or threads.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::disallowed_methods,
+    reason = "a test that panics fails, and its files are its own"
+)]
 
 mod graphs;
 

@@ -1,4 +1,10 @@
 //! The reference page is generated, and not stale.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::disallowed_methods,
+    reason = "a test that panics fails, and its files are its own"
+)]
 
 #[test]
 fn the_reference_page_is_what_the_catalogue_says() {

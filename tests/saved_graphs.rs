@@ -1,4 +1,10 @@
 //! Every saved graph: what an artist would look for in its surfaces, asserted.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::disallowed_methods,
+    reason = "a test that panics fails, and its files are its own"
+)]
 
 mod graphs;
 
@@ -138,7 +144,7 @@ fn the_vest_passes_through_its_five_rails_its_hem_its_neckline_and_its_chest() {
     assert_eq!((vest.positions().len(), vest.polygon_count()), (5376, 5280));
     assert_fair("vest", &vest, false, 25.0);
     let (low, high) = bounds(&vest);
-    assert!(low.distance(DVec3::new(-0.1690, 0.93, -0.0927)) < 1e-4, "{low}");
+    assert!(low.distance(DVec3::new(-0.1686, 0.93, -0.0919)) < 1e-4, "{low}");
     assert!(high.distance(DVec3::new(0.1686, 1.4498, 0.1490)) < 2e-3, "{high}");
     // Left and right are mirror images.
     assert!((low.x + high.x).abs() < 1e-4, "{} {}", low.x, high.x);

@@ -29,7 +29,7 @@ pub(super) fn apply(graph: &mut Graph, assignment: &str) -> Result<(), String> {
 fn literal(wanted: LiteralKind, value: &str) -> Result<Literal, String> {
     if let Ok(literal) = parse_literal(value)
         && (literal.kind() == wanted || wanted == LiteralKind::Number)
-        && !(wanted == LiteralKind::Text && !value.starts_with("Text("))
+        && (wanted != LiteralKind::Text || value.starts_with("Text("))
     {
         return Ok(literal);
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 use maquette_geometry::{curve, mesh, scene, sections};
 use maquette_graph::{ContentHash, ContentHasher, Wire};
 
@@ -67,7 +67,7 @@ fn curve_bytes(curve: &curve::Curve) -> usize {
     size_of::<curve::Curve>()
         + curve.name().len()
         + size_of_val(curve.points())
-        + curve.pressure().map_or(0, |pressure| size_of_val(pressure))
+        + curve.pressure().map_or(0, size_of_val)
 }
 
 fn hash_mesh(hasher: &mut ContentHasher, mesh: &mesh::Mesh) {
@@ -89,8 +89,8 @@ fn mesh_bytes(mesh: &mesh::Mesh) -> usize {
     size_of_val(mesh.positions())
         + size_of_val(mesh.corners())
         + 4 * mesh.polygon_count()
-        + mesh.normals().map_or(0, |n| n.len() * size_of::<DVec3>())
-        + mesh.uvs().map_or(0, |u| u.len() * size_of::<DVec2>())
+        + mesh.normals().map_or(0, size_of_val)
+        + mesh.uvs().map_or(0, size_of_val)
 }
 
 fn count(number: usize, one: &str, many: &str) -> String {

@@ -152,7 +152,7 @@ mod tests {
 
     #[test]
     fn an_open_curve_keeps_its_ends_and_a_straight_one_stays() {
-        let at = |k: u32| DVec3::new(f64::from(k) * 0.01, if k % 2 == 0 { 0.002 } else { -0.002 }, 1.0);
+        let at = |k: u32| DVec3::new(f64::from(k) * 0.01, if k.is_multiple_of(2) { 0.002 } else { -0.002 }, 1.0);
         let shaky = Curve::new("shaky", (0..=100).map(at).collect(), false).unwrap();
         let calm = smooth(&shaky, 0.1).unwrap();
         assert_eq!((calm.start(), calm.end(), calm.points().len()), (shaky.start(), shaky.end(), 101));
