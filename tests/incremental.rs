@@ -97,8 +97,8 @@ fn results_are_the_same_for_every_run_and_any_number_of_threads() {
         let saved = Saved::load(name);
         let hashes = |threads| {
             let mut evaluator = Evaluator::new(&EvaluatorOptions { threads, ..Default::default() });
+            let evaluation = saved.evaluate(&mut evaluator, &saved.results());
             let results = saved.graph.results();
-            let evaluation = evaluator.evaluate(&saved.catalogue, &saved.graph, &Saved::request(&results));
             results.iter().flat_map(|id| evaluation.values(*id).unwrap()).map(|v| v.hash()).collect::<Vec<_>>()
         };
         let once = hashes(1);

@@ -185,9 +185,7 @@ fn the_vest_passes_through_its_five_rails_its_hem_its_neckline_and_its_chest() {
 /// silhouette but for `bulge` metres.
 fn assert_two_views(name: &str, closed: bool, fold: f64, bulge: f64) -> (Mesh, Sections) {
     let saved = Saved::load(name);
-    let results: Vec<String> =
-        saved.graph.results().iter().map(|id| saved.graph.node(*id).unwrap().name().to_owned()).collect();
-    let mut targets: Vec<&str> = results.iter().map(String::as_str).collect();
+    let mut targets = saved.results();
     targets.extend(["sections", "surface", "sorted"]);
     let evaluation = saved.evaluate(&mut Evaluator::default(), &targets);
     let mesh = mesh(&saved, &evaluation, "surface").clone();

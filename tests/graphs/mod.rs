@@ -25,6 +25,11 @@ impl Saved {
         self.graph.find(name).unwrap_or_else(|| panic!("no node \"{name}\""))
     }
 
+    /// Names of the results.
+    pub fn results(&self) -> Vec<&str> {
+        self.graph.results().iter().map(|id| self.graph.node(*id).unwrap().name()).collect()
+    }
+
     pub fn request(targets: &[NodeId]) -> Request<'static> {
         Request::nodes(targets).base(Path::new("graphs"))
     }
