@@ -154,10 +154,17 @@ fn neither_half_results_nor_errors_of_a_stopped_node_are_remembered() {
 }
 
 #[test]
-fn a_good_result_that_was_never_told_to_stop_is_kept() {
+fn a_result_that_was_never_told_to_stop_is_kept() {
     let cancel = CancelToken::new();
     let mut rig = Rig::default();
     let token = cancel.clone();
+    rig.register(kind("deaf-and-failing", |node| {
+        let token = token.clone();
+        node.evaluate(move |_| {
+            token.cancel();
+            Err(maquette_graph::NodeError::new("nothing to do with the stop"))
+        });
+    }));
     rig.register(kind("deaf", |node| {
         let out = node.output::<f64>("number", "One.");
         node.evaluate(move |ports| {
@@ -174,6 +181,14 @@ fn a_good_result_that_was_never_told_to_stop_is_kept() {
     assert_eq!(state(&evaluation, rig.id("deaf")), "done");
     assert_eq!(state(&evaluation, behind), "cancelled");
     assert_eq!(rig.ran(&["behind"]), ["behind"]);
+
+    let cancel = CancelToken::new();
+    let failing = rig.add("deaf-and-failing", "failing");
+    for line in ["started failing", "planned 0"] {
+        let evaluation = rig.request(Request::nodes(&[failing]).cancel(&cancel));
+        assert_eq!(state(&evaluation, failing), "failed: nothing to do with the stop");
+        assert!(rig.log.iter().any(|l| l == line), "{:?}", rig.log);
+    }
 }
 
 #[test]

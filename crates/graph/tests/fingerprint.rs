@@ -1,6 +1,6 @@
 //! Nodes that read files run again when the content of the file changes, and only then.
 
-#![allow(clippy::unwrap_used, reason = "in tests a failing unwrap is a failing test")]
+#![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "in tests a failing unwrap is a failing test")]
 
 mod kinds;
 

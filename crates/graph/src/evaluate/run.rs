@@ -172,12 +172,10 @@ impl Runner<'_> {
         let result = self.call(step, &inputs, &told_to_stop);
         let duration = begun.elapsed();
         if told_to_stop.into_inner() {
-            // Even a good result may be one that stopped halfway.
+            // Even a good result may be one that stopped halfway, and an error may say no more than that.
             return Ended::Cancelled;
         }
         let (result, report) = match result {
-            // A node may answer a cancellation with an error of its own; that says nothing about its inputs.
-            Err(_) if self.cancel.is_cancelled() => return Ended::Cancelled,
             Err(NodeError::Cancelled) => return Ended::Cancelled,
             Err(NodeError::Failed { input, message }) => {
                 (Err(failure(&step.kind, input, message)), self.silence.clone())
