@@ -19,9 +19,9 @@ pub struct EvaluationArguments {
     /// Put a value at an input for this evaluation, such as --set legs.count=32; may be given several times.
     #[arg(long = "set", value_name = "NODE.PORT=VALUE")]
     pub(super) set: Vec<String>,
-    /// Threads; 0 takes one per core. The number changes no result.
-    #[arg(long, default_value_t = 0, value_name = "N")]
-    pub(super) threads: usize,
+    /// Threads, at most 256; 0 takes one per core. The number changes no result.
+    #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u16).range(0..=256))]
+    pub(super) threads: u16,
     /// Write what succeeded although a node failed. The exit code is 1 all the same.
     #[arg(long)]
     pub(super) keep_going: bool,
@@ -53,7 +53,8 @@ pub(super) fn evaluate(catalogue: &Catalogue, arguments: &EvaluationArguments) -
         return Err(missing);
     }
     let progress = Progress::new(!arguments.quiet);
-    let mut evaluator = Evaluator::new(&EvaluatorOptions { threads: arguments.threads, ..Default::default() });
+    let mut evaluator =
+        Evaluator::new(&EvaluatorOptions { threads: usize::from(arguments.threads), ..Default::default() });
     let request = Request::nodes(&targets).events(&progress).base(file.base());
     let evaluation = evaluator.evaluate(catalogue, &file.loaded.graph, &request);
     progress.finish();

@@ -140,6 +140,14 @@ fn each_node_runs_once_however_many_wait_for_it() {
 }
 
 #[test]
+fn a_mistyped_number_of_threads_does_no_harm() {
+    let begun = std::time::Instant::now();
+    let reference = states(&mut layered(1, 5, 5));
+    assert_eq!(states(&mut layered(usize::MAX, 5, 5)), reference);
+    assert!(begun.elapsed() < Duration::from_secs(20), "{:?}", begun.elapsed());
+}
+
+#[test]
 fn nodes_may_use_threads_themselves() {
     let mut rig = Rig::with_options(&EvaluatorOptions { threads: 2, ..EvaluatorOptions::default() });
     rig.register(kind("sum-up", |node| {

@@ -16,11 +16,14 @@ use crate::value::{ContentHash, KeyHasherBuilder};
 /// How to evaluate.
 #[derive(Clone, Debug)]
 pub struct EvaluatorOptions {
-    /// Threads; 0 takes one per core. The number changes no result.
+    /// Threads, at most 256; 0 takes one per core. The number changes no result.
     pub threads: usize,
     /// Bytes of results to remember between evaluations; the least recently used go first.
     pub byte_budget: usize,
 }
+
+/// A mistyped number of threads must not bring the machine down.
+const MOST_THREADS: usize = 256;
 
 impl Default for EvaluatorOptions {
     fn default() -> Self {
@@ -217,7 +220,7 @@ impl Evaluator {
     fn start_pool(&mut self, plan: &Plan) {
         if self.threads != 1 && self.pool.is_none() && plan.steps.len() > 1 {
             // Without threads to be had, the calling thread does the work alone; results are the same.
-            self.pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads).build().ok();
+            self.pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.min(MOST_THREADS)).build().ok();
         }
     }
 
