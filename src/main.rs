@@ -1,5 +1,5 @@
 //! The headless command of Maquette. Exit codes: 0 done, 1 a node failed, 2 the graph or the arguments are wrong,
-//! 3 a result could not be written.
+//! 3 a result could not be written, or the program broke down.
 
 use std::process::ExitCode;
 
@@ -8,7 +8,8 @@ use maquette::commands::{self, Ended};
 
 /// Evaluates procedural modelling graphs: sketched curves in, models out.
 ///
-/// Exit codes: 0 done, 1 a node failed, 2 the graph or the arguments are wrong, 3 a result could not be written.
+/// Exit codes: 0 done, 1 a node failed, 2 the graph or the arguments are wrong, 3 a result could not be written, or the
+/// program broke down.
 #[derive(Parser)]
 #[command(version, about, long_about, max_term_width = 110)]
 struct Arguments {
@@ -39,5 +40,9 @@ fn main() -> ExitCode {
         commands::console::error("maquette broke down; this is a mistake in the program, please report it");
         Ended::NotWritten
     });
+    if commands::console::lost() && ended == Ended::Done {
+        commands::console::error("not everything could be written to the standard output");
+        return ExitCode::from(Ended::NotWritten as u8);
+    }
     ExitCode::from(ended as u8)
 }

@@ -2,15 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-use maquette_graph::Catalogue;
 use maquette_graph::file::Severity;
+use maquette_graph::{Catalogue, Evaluator, OutcomeState, Request};
 
 use super::graph_file::GraphFile;
 use super::{Ended, console};
 
-/// Load graphs and say everything that is wrong with them, each with place and remedy. Nothing is evaluated.
+/// Load graphs and say everything that is wrong with them, each with place and remedy.
 #[derive(clap::Args)]
 pub struct Arguments {
+    /// Evaluate every node as well, and say which ones fail; without it nothing is evaluated.
+    #[arg(long)]
+    evaluate: bool,
     /// The graphs, .ron files.
     #[arg(required = true)]
     graphs: Vec<PathBuf>,
@@ -27,7 +30,7 @@ pub fn check(arguments: &Arguments) -> Ended {
     };
     let mut ended = Ended::Done;
     for path in &arguments.graphs {
-        if !check_one(&catalogue, path) {
+        if !check_one(&catalogue, path, arguments.evaluate) {
             ended = Ended::Wrong;
         }
     }
@@ -35,7 +38,7 @@ pub fn check(arguments: &Arguments) -> Ended {
 }
 
 /// Whether the graph is sound.
-fn check_one(catalogue: &Catalogue, path: &Path) -> bool {
+fn check_one(catalogue: &Catalogue, path: &Path, evaluate: bool) -> bool {
     let file = match GraphFile::open(catalogue, path) {
         Ok(file) => file,
         Err(messages) => {
@@ -54,9 +57,30 @@ fn check_one(catalogue: &Catalogue, path: &Path) -> bool {
         }
     }
     let all: Vec<_> = graph.nodes().map(|(id, _)| id).collect();
-    for message in file.missing_links(&all).into_iter().chain(file.missing_files()) {
-        console::remark(message);
-        errors += 1;
+    let said: Vec<String> = file.missing_links(&all).into_iter().chain(file.missing_content()).collect();
+    said.iter().for_each(console::remark);
+    errors += said.len();
+    if evaluate {
+        let evaluation = Evaluator::default().evaluate(catalogue, graph, &Request::nodes(&all).base(file.base()));
+        for (id, outcome) in evaluation.outcomes() {
+            match &outcome.state {
+                OutcomeState::Failed(failure) => {
+                    let message = file.about(Severity::Error, id, failure.port.as_deref(), &failure.message);
+                    // What was found without evaluating is said already, in other words.
+                    if !said.iter().any(|s| s.split(": ").take(2).eq(message.split(": ").take(2))) {
+                        console::remark(message);
+                        errors += 1;
+                    }
+                }
+                OutcomeState::Done { report, .. } => {
+                    for warning in &report.warnings {
+                        console::remark(file.about(Severity::Warning, id, None, warning));
+                        warnings += 1;
+                    }
+                }
+                OutcomeState::Waiting(_) | OutcomeState::Cancelled => {}
+            }
+        }
     }
     let results = graph.results();
     let used = graph.upstream(&results);
@@ -64,9 +88,15 @@ fn check_one(catalogue: &Catalogue, path: &Path) -> bool {
         let path = path.display();
         console::remark(format!("{path}: warning: the graph has no result: add a mesh-out or curves-out node"));
         warnings += 1;
-    } else {
+    } else if errors == 0 {
+        // A link that could not be read makes healthy nodes look useless.
         for id in all.iter().filter(|id| !used.contains(id)) {
-            console::remark(file.about(*id, None, "warning: no result depends on it; link it to one, or remove it"));
+            console::remark(file.about(
+                Severity::Warning,
+                *id,
+                None,
+                "no result depends on it; link it to one, or remove it",
+            ));
             warnings += 1;
         }
     }

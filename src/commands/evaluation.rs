@@ -1,8 +1,10 @@
 //! Opens a graph and evaluates its results: what `run` and `render` share.
 
-use std::path::PathBuf;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 
-use maquette_graph::{Catalogue, Evaluation, Evaluator, EvaluatorOptions, NodeId, OutcomeState, Request};
+use maquette_graph::file::Severity;
+use maquette_graph::{Catalogue, Evaluation, Evaluator, EvaluatorOptions, NodeId, OutcomeState, Request, WireType};
 
 use super::graph_file::GraphFile;
 use super::progress_bar::Progress;
@@ -37,21 +39,37 @@ pub(super) struct Evaluated {
     pub(super) evaluation: Evaluation,
     /// One message per node that failed.
     pub(super) failures: Vec<String>,
+    /// What deserves a look, in the file or in a node's result.
+    pub(super) warnings: Vec<String>,
 }
 
 /// Evaluates; what fails in a node is in [`Evaluated::failures`], what is wrong with graph or arguments is an error.
-pub(super) fn evaluate(catalogue: &Catalogue, arguments: &EvaluationArguments) -> Result<Evaluated, Vec<String>> {
-    let mut file = GraphFile::open_sound(catalogue, &arguments.graph, arguments.quiet)?;
+///
+/// `suits` is asked before anything runs whether the types of the results serve the purpose.
+pub(super) fn evaluate(
+    catalogue: &Catalogue,
+    arguments: &EvaluationArguments,
+    suits: impl Fn(&[WireType]) -> Result<(), Vec<String>>,
+) -> Result<Evaluated, Vec<String>> {
+    let (mut file, mut warnings) = GraphFile::open_sound(catalogue, &arguments.graph)?;
     let wrong: Vec<String> =
         arguments.set.iter().filter_map(|set| overrides::apply(&mut file.loaded.graph, set).err()).collect();
     if !wrong.is_empty() {
-        return Err(wrong.into_iter().map(|message| format!("error: {message}")).collect());
+        let path = file.path.display();
+        return Err(wrong.into_iter().map(|message| format!("{path}: error: {message}")).collect());
     }
     let targets = targets(&file, &arguments.outputs)?;
     let missing = file.missing_links(&targets);
     if !missing.is_empty() {
         return Err(missing);
     }
+    let outputs = |id: &NodeId| file.loaded.graph.node(*id).and_then(|n| n.kind().cloned());
+    let types: Vec<WireType> = targets
+        .iter()
+        .filter_map(outputs)
+        .flat_map(|k| k.outputs().iter().map(|o| o.wire).collect::<Vec<_>>())
+        .collect();
+    suits(&types)?;
     let progress = Progress::new(!arguments.quiet);
     let mut evaluator =
         Evaluator::new(&EvaluatorOptions { threads: usize::from(arguments.threads), ..Default::default() });
@@ -62,22 +80,26 @@ pub(super) fn evaluate(catalogue: &Catalogue, arguments: &EvaluationArguments) -
     for (id, outcome) in evaluation.outcomes() {
         match &outcome.state {
             OutcomeState::Failed(failure) => {
-                failures.push(file.about(id, failure.port.as_deref(), &format!("error: {}", failure.message)));
+                failures.push(file.about(Severity::Error, id, failure.port.as_deref(), &failure.message));
             }
             OutcomeState::Waiting(on) if targets.contains(&id) => {
                 failures.push(file.about(
+                    Severity::Error,
                     id,
                     None,
-                    &format!("error: not made, because \"{}\" failed", on.join("\", \"")),
+                    &format!("not made, because \"{}\" failed", on.join("\", \"")),
                 ));
             }
-            OutcomeState::Done { report, .. } if !arguments.quiet => {
-                report.warnings.iter().for_each(|w| console::remark(file.about(id, None, &format!("warning: {w}"))));
+            OutcomeState::Done { report, .. } => {
+                warnings.extend(report.warnings.iter().map(|w| file.about(Severity::Warning, id, None, w)));
             }
             _ => {}
         }
     }
-    Ok(Evaluated { file, targets, evaluation, failures })
+    if !arguments.quiet {
+        warnings.iter().for_each(console::remark);
+    }
+    Ok(Evaluated { file, targets, evaluation, failures, warnings })
 }
 
 fn targets(file: &GraphFile, wanted: &[String]) -> Result<Vec<NodeId>, Vec<String>> {
@@ -94,10 +116,17 @@ fn targets(file: &GraphFile, wanted: &[String]) -> Result<Vec<NodeId>, Vec<Strin
     let find = |wanted: &String| {
         results.iter().copied().find(|id| name(id) == wanted).ok_or_else(|| {
             let known: Vec<_> = results.iter().map(name).collect();
-            format!("{path}: error: --output {wanted}: no result has that name; there is {}", known.join(", "))
+            let file = super::write::format(Path::new(wanted)).is_ok();
+            let hint = if file { format!("; to write a file say -o {wanted}") } else { String::new() };
+            format!("{path}: error: --output {wanted}: no result has that name; there is {}{hint}", known.join(", "))
         })
     };
     let (found, unknown): (Vec<_>, Vec<_>) = wanted.iter().map(find).partition(Result::is_ok);
     let unknown: Vec<_> = unknown.into_iter().filter_map(Result::err).collect();
-    if unknown.is_empty() { Ok(found.into_iter().flatten().collect()) } else { Err(unknown) }
+    if !unknown.is_empty() {
+        return Err(unknown);
+    }
+    // Each result once, in the order of the graph, however often and in whatever order it was asked for.
+    let found: BTreeSet<NodeId> = found.into_iter().flatten().collect();
+    Ok(found.into_iter().collect())
 }

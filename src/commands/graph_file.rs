@@ -5,8 +5,6 @@ use std::path::{Path, PathBuf};
 use maquette_graph::file::{self, Loaded, Problem, Severity};
 use maquette_graph::{Catalogue, Literal, NodeId, Source};
 
-use super::console;
-
 /// A graph with the file it came from.
 pub(super) struct GraphFile {
     pub(super) path: PathBuf,
@@ -31,15 +29,14 @@ impl GraphFile {
         Ok(Self { path: path.to_owned(), loaded })
     }
 
-    /// Reads a graph that is to be evaluated: says its warnings, and refuses it where something is wrong.
-    pub(super) fn open_sound(catalogue: &Catalogue, path: &Path, quiet: bool) -> Result<Self, Refused> {
+    /// Reads a graph that is to be evaluated, with its warnings; refuses it where something is wrong.
+    pub(super) fn open_sound(catalogue: &Catalogue, path: &Path) -> Result<(Self, Vec<String>), Refused> {
         let file = Self::open(catalogue, path)?;
         let (errors, warnings): (Vec<_>, Vec<_>) =
             file.loaded.problems.iter().partition(|p| p.severity == Severity::Error);
-        if !quiet {
-            warnings.iter().for_each(|problem| console::remark(file.located(problem)));
-        }
-        if errors.is_empty() { Ok(file) } else { Err(errors.iter().map(|p| file.located(p)).collect()) }
+        let errors: Vec<String> = errors.iter().map(|p| file.located(p)).collect();
+        let warnings = warnings.iter().map(|p| file.located(p)).collect();
+        if errors.is_empty() { Ok((file, warnings)) } else { Err(errors) }
     }
 
     /// The problem with the file's name before it.
@@ -52,12 +49,13 @@ impl GraphFile {
         self.path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
     }
 
-    /// A message about a node, with the place of its input in the file.
-    pub(super) fn about(&self, node: NodeId, input: Option<&str>, message: &str) -> String {
+    /// A message about a node, in the form of all others: `file:line:column: severity: node "..", input "..": message`.
+    pub(super) fn about(&self, severity: Severity, node: NodeId, input: Option<&str>, message: &str) -> String {
         let name = self.loaded.graph.node(node).map_or("", |n| n.name());
         let place = self.loaded.place(node, input).map(|(line, column)| format!("{line}:{column}:"));
-        let input = input.map(|i| format!(", input \"{i}\"")).unwrap_or_default();
-        format!("{}:{} node \"{name}\"{input}: {message}", self.path.display(), place.unwrap_or_default())
+        let input = input.map(|i| format!(", input {i:?}")).unwrap_or_default();
+        let (path, place) = (self.path.display(), place.unwrap_or_default());
+        format!("{path}:{place} {severity}: node {name:?}{input}: {message}")
     }
 
     /// What keeps these nodes from being evaluated although the file is sound: inputs that must be linked and are not.
@@ -68,26 +66,35 @@ impl GraphFile {
             let Some((node, kind)) = graph.node(id).and_then(|n| Some((n, n.kind()?))) else { continue };
             for input in kind.inputs() {
                 if input.default.is_none() && !input.optional && node.source(&input.name).is_none() {
-                    let message = format!("error: nothing is connected; link an output that gives {}", input.wire);
-                    missing.push(self.about(id, Some(&input.name), &message));
+                    let message = format!("nothing is connected; link an output that gives {}", input.wire);
+                    missing.push(self.about(Severity::Error, id, Some(&input.name), &message));
                 }
             }
         }
         missing
     }
 
-    /// Files that the graph names and that are not there.
-    pub(super) fn missing_files(&self) -> Vec<String> {
+    /// Files that the graph names and that are not there, and files and sketches that it leaves empty.
+    pub(super) fn missing_content(&self) -> Vec<String> {
         let mut missing = Vec::new();
         for (id, node) in self.loaded.graph.nodes() {
-            for (input, source) in node.sources() {
-                if let Source::Literal { literal: Literal::File(path), .. } = source
-                    && !path.is_empty()
-                    && !self.base().join(path).is_file()
-                {
-                    let message = format!("error: the file {} does not exist", self.base().join(path).display());
-                    missing.push(self.about(id, Some(input), &message));
-                }
+            for input in node.kind().map(|kind| kind.inputs()).unwrap_or_default() {
+                let literal = match node.source(&input.name) {
+                    Some(Source::Literal { literal, .. }) => Some(literal),
+                    None => input.default.as_ref(),
+                    Some(Source::Link(_) | Source::Unread(_)) => None,
+                };
+                let message = match literal {
+                    Some(Literal::File(path)) if path.is_empty() => "no file is named; give a path".to_owned(),
+                    Some(Literal::File(path)) if !self.base().join(path).is_file() => {
+                        format!("the file {} does not exist", self.base().join(path).display())
+                    }
+                    Some(Literal::Strokes(strokes)) if strokes.is_empty() => {
+                        "there are no strokes; draw some, or remove the node".to_owned()
+                    }
+                    _ => continue,
+                };
+                missing.push(self.about(Severity::Error, id, Some(&input.name), &message));
             }
         }
         missing

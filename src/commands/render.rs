@@ -23,7 +23,7 @@ pub struct Arguments {
     /// Draw the edges of the faces.
     #[arg(long)]
     wireframe: bool,
-    /// Draw the graph's curves-out results too.
+    /// Draw the graph's curves-out results too; they are drawn anyway where there is no mesh.
     #[arg(long)]
     curves: bool,
 }
@@ -52,7 +52,7 @@ pub fn render(arguments: &Arguments) -> Ended {
     }
     let evaluated = maquette_nodes::catalogue()
         .map_err(|error| vec![format!("error: {error}")])
-        .and_then(|catalogue| evaluate(&catalogue, &arguments.evaluation));
+        .and_then(|catalogue| evaluate(&catalogue, &arguments.evaluation, |_| Ok(())));
     let evaluated = match evaluated {
         Ok(evaluated) => evaluated,
         Err(messages) => {
@@ -73,8 +73,10 @@ pub fn render(arguments: &Arguments) -> Ended {
         ViewName::Top => View::Top,
         ViewName::ThreeQuarter => View::ThreeQuarter,
     };
-    let options = PictureOptions { view, width, height, wireframe: arguments.wireframe, curves: arguments.curves };
     let scene = results::scene(&evaluated.evaluation, &evaluated.targets);
+    // Where there are only curves, a picture without them would be empty.
+    let curves = arguments.curves || scene.meshes.is_empty();
+    let options = PictureOptions { view, width, height, wireframe: arguments.wireframe, curves };
     let picture = match draw(&scene, &options) {
         Ok(picture) => picture,
         Err(error) => {

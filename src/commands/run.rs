@@ -1,13 +1,13 @@
 //! `maquette run`: evaluates a graph and writes its results.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use glam::DVec3;
 use maquette_geometry::file_format::FileFormat;
-use maquette_geometry::mesh::check;
+use maquette_geometry::mesh::{Mesh, check};
 use maquette_geometry::scene::Scene;
-use maquette_graph::{Catalogue, Outcome, OutcomeState};
+use maquette_graph::{Outcome, OutcomeState};
 use serde_json::{Value as Json, json};
 
 use super::evaluation::{Evaluated, EvaluationArguments, evaluate};
@@ -48,7 +48,11 @@ pub fn run(arguments: &Arguments) -> Ended {
         .iter()
         .map(|path| write::format(path).map_err(|error| vec![format!("error: {error}")]))
         .collect();
-    let evaluated = formats.and_then(|formats| Ok((formats, run_graph(&catalogue, arguments)?)));
+    let evaluated = formats.and_then(|formats| {
+        let files: Vec<_> = arguments.files.iter().map(PathBuf::as_path).zip(formats.iter().copied()).collect();
+        let evaluated = evaluate(&catalogue, &arguments.evaluation, |types| write::suits(&files, types))?;
+        Ok((formats, evaluated))
+    });
     let (formats, evaluated) = match evaluated {
         Ok(evaluated) => evaluated,
         Err(messages) => return refuse(messages),
@@ -56,13 +60,15 @@ pub fn run(arguments: &Arguments) -> Ended {
     evaluated.failures.iter().for_each(console::remark);
     let scene = results::scene(&evaluated.evaluation, &evaluated.targets);
     let mut written = Vec::new();
+    let mut errors = evaluated.failures.clone();
     let mut ended = if evaluated.failures.is_empty() { Ended::Done } else { Ended::NodeFailed };
     if ended == Ended::Done || arguments.evaluation.keep_going {
         for (path, format) in arguments.files.iter().zip(formats) {
             match write::scene(path, format, &scene) {
-                Ok(bytes) => written.push((path.as_path(), bytes)),
+                Ok(files) => written.extend(files),
                 Err(error) => {
-                    console::error(error);
+                    console::error(&error);
+                    errors.push(format!("error: {error}"));
                     ended = if ended == Ended::Done { Ended::NotWritten } else { ended };
                 }
             }
@@ -71,22 +77,18 @@ pub fn run(arguments: &Arguments) -> Ended {
         console::remark("nothing was written, because a node failed; --keep-going writes what succeeded");
     }
     if arguments.json {
-        console::say(as_json(arguments, &evaluated, &scene, &written, ended).to_string());
+        console::say(as_json(arguments, &evaluated, &scene, &written, &errors).to_string());
     } else if !arguments.evaluation.quiet {
         as_text(arguments, &evaluated, &scene, &written);
     }
     ended
 }
 
-fn run_graph(catalogue: &Catalogue, arguments: &Arguments) -> Result<Evaluated, Vec<String>> {
-    evaluate(catalogue, &arguments.evaluation)
-}
-
 fn milliseconds(duration: Duration) -> String {
     format!("{:.2} ms", duration.as_secs_f64() * 1e3)
 }
 
-fn as_text(arguments: &Arguments, evaluated: &Evaluated, scene: &Scene, written: &[(&Path, usize)]) {
+fn as_text(arguments: &Arguments, evaluated: &Evaluated, scene: &Scene, written: &[(PathBuf, usize)]) {
     let Evaluated { file, evaluation, .. } = evaluated;
     console::say(format!(
         "{}: {} nodes run, {} hits, {}",
@@ -112,7 +114,7 @@ fn as_text(arguments: &Arguments, evaluated: &Evaluated, scene: &Scene, written:
         {
             report.notes.iter().for_each(|note| console::say(format!("      {note}")));
             for figure in &report.figures {
-                console::say(format!("      {}: {} {}", figure.name, figure.value, figure.unit));
+                console::say(format!("      {}: {} {}", figure.name, digits(figure.value), figure.unit));
             }
         }
     }
@@ -133,6 +135,18 @@ fn as_text(arguments: &Arguments, evaluated: &Evaluated, scene: &Scene, written:
     }
 }
 
+/// Four digits are enough to read; `--json` has them all.
+fn digits(value: f64) -> String {
+    if value.abs() < 1e-12 {
+        return "0".to_owned();
+    }
+    if (1e-3..1e6).contains(&value.abs()) {
+        let decimals = (3.0 - value.abs().log10().floor()).max(0.0) as usize;
+        return format!("{value:.decimals$}");
+    }
+    format!("{value:.3e}")
+}
+
 fn state(outcome: &Outcome) -> String {
     match (&outcome.state, outcome.ran) {
         (OutcomeState::Done { .. }, true) => milliseconds(outcome.duration),
@@ -147,10 +161,14 @@ fn as_json(
     arguments: &Arguments,
     evaluated: &Evaluated,
     scene: &Scene,
-    written: &[(&Path, usize)],
-    ended: Ended,
+    written: &[(PathBuf, usize)],
+    errors: &[String],
 ) -> Json {
-    let Evaluated { file, evaluation, failures, .. } = evaluated;
+    let Evaluated { file, evaluation, warnings, .. } = evaluated;
+    let threads = match arguments.evaluation.threads {
+        0 => std::thread::available_parallelism().map_or(1, usize::from),
+        asked => usize::from(asked),
+    };
     let nodes: Vec<Json> = evaluation.outcomes().map(|(_, outcome)| node_json(outcome)).collect();
     let meshes = scene.meshes.iter().map(|item| {
         json!({
@@ -159,6 +177,7 @@ fn as_json(
             "vertices": item.mesh.positions().len(),
             "faces": item.mesh.polygon_count(),
             "bounds": bounds(item.mesh.positions()),
+            "check": arguments.report.then(|| check_json(&item.mesh)),
         })
     });
     let curves = scene.curves.iter().map(|item| {
@@ -175,15 +194,29 @@ fn as_json(
         written.iter().map(|(path, bytes)| json!({ "path": path.display().to_string(), "bytes": bytes })).collect();
     json!({
         "graph": file.path.display().to_string(),
-        "ok": ended == Ended::Done,
+        "ok": errors.is_empty(),
         "seconds": evaluation.duration.as_secs_f64(),
-        "threads": arguments.evaluation.threads,
+        "threads": threads,
         "ran": evaluation.run_count(),
         "hits": evaluation.hit_count(),
         "nodes": nodes,
         "results": meshes.chain(curves).collect::<Vec<_>>(),
         "files": files,
-        "errors": failures,
+        "warnings": warnings,
+        "errors": errors,
+    })
+}
+
+/// What `--report` says of a mesh, as data.
+fn check_json(mesh: &Mesh) -> Json {
+    let found = check(mesh);
+    json!({
+        "sound": found.is_sound(),
+        "closed": found.closed,
+        "shells": found.shells,
+        "boundary_loops": found.boundary_loops,
+        "normals_outward": found.normals_outward,
+        "largest_fold_degrees": found.largest_fold_degrees,
     })
 }
 

@@ -1,11 +1,13 @@
 //! Results as files: whole or not at all.
 
 use std::io::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use maquette_geometry::curve::Curve;
 use maquette_geometry::file_format::{FileFormat, curves_json, gltf_write, obj, ply};
 use maquette_geometry::scene::Scene;
+use maquette_graph::WireType;
+use maquette_nodes::wire;
 
 /// The format that a file's extension asks for.
 pub(super) fn format(path: &Path) -> Result<FileFormat, String> {
@@ -14,61 +16,89 @@ pub(super) fn format(path: &Path) -> Result<FileFormat, String> {
             Err(format!("{}: SVG is read, not written: choose .glb, .gltf, .obj, .ply or .json", path.display()))
         }
         Ok(format) => Ok(format),
-        Err(error) => Err(error.to_string()),
+        Err(_) => Err(format!("{}: write .glb, .gltf, .obj, .ply or .json", path.display())),
     }
 }
 
-/// Writes a scene in the format of the file's extension; returns the bytes written.
-pub(super) fn scene(path: &Path, format: FileFormat, scene: &Scene) -> Result<usize, String> {
+/// Says why results of these types can't be written to these files.
+pub(super) fn suits(files: &[(&Path, FileFormat)], types: &[WireType]) -> Result<(), Vec<String>> {
+    let meshes = types.contains(&WireType::of::<wire::MeshResult>());
+    let curves = types.contains(&WireType::of::<wire::CurvesResult>());
+    let wrong: Vec<String> = files
+        .iter()
+        .filter_map(|(path, format)| match format {
+            FileFormat::Ply if !meshes => Some((path, "a .ply file holds a mesh", "mesh-out")),
+            FileFormat::Json if !curves => Some((path, "a .json file holds curves", "curves-out")),
+            _ => None,
+        })
+        .map(|(path, what, node)| {
+            format!("error: {}: {what}, and no result asked for is one: add a {node} node", path.display())
+        })
+        .collect();
+    if wrong.is_empty() { Ok(()) } else { Err(wrong) }
+}
+
+/// Writes a scene in the format of the file's extension; returns the files written, with their bytes.
+pub(super) fn scene(path: &Path, format: FileFormat, scene: &Scene) -> Result<Vec<(PathBuf, usize)>, String> {
     let fail = |error: String| format!("{}: {error}", path.display());
-    let bytes = match format {
-        FileFormat::Glb => gltf_write::glb(scene).map_err(|e| fail(e.to_string()))?,
-        FileFormat::Gltf => gltf_write::gltf(scene).map_err(|e| fail(e.to_string()))?,
-        FileFormat::Ply => ply::write(scene).map_err(|e| fail(e.to_string()))?,
+    let mut files = Vec::new();
+    match format {
+        FileFormat::Glb => files.push((path.to_owned(), gltf_write::glb(scene).map_err(|e| fail(e.to_string()))?)),
+        FileFormat::Gltf => files.push((path.to_owned(), gltf_write::gltf(scene).map_err(|e| fail(e.to_string()))?)),
+        FileFormat::Ply => files.push((path.to_owned(), ply::write(scene).map_err(|e| fail(e.to_string()))?)),
         FileFormat::Obj => {
             let library = path.with_extension("mtl");
             let library_name = library.file_name().map(|n| n.to_string_lossy().into_owned());
+            let model = obj::write(scene, library_name.as_deref()).map_err(|e| fail(e.to_string()))?;
             let materials = obj::material_library_bytes(scene).map_err(|e| fail(e.to_string()))?;
-            whole(&library, &materials)?;
-            obj::write(scene, library_name.as_deref()).map_err(|e| fail(e.to_string()))?
+            files.push((path.to_owned(), model));
+            files.push((library, materials));
         }
         FileFormat::Json => {
             let curves: Vec<Curve> = scene.curves.iter().flat_map(|item| item.curves.iter().cloned()).collect();
-            if curves.is_empty() {
-                return Err(fail("there are no curves for a .json file: add a curves-out node".to_owned()));
-            }
-            curves_json::write(&curves)
+            files.push((path.to_owned(), curves_json::write(&curves)));
         }
         FileFormat::Svg => return Err(fail("SVG is read, not written".to_owned())),
-    };
-    whole(path, &bytes).map(|()| bytes.len())
+    }
+    // Everything is made before anything is written.
+    files.into_iter().map(|(path, bytes)| whole(&path, &bytes).map(|()| (path, bytes.len()))).collect()
 }
 
-/// Writes a file beside, then puts it in place, so that nobody ever sees half of it.
+/// Writes a file beside, then puts it in place, so that nobody ever sees half of it. A link keeps leading to the file
+/// it leads to, and a file that was there keeps its permissions.
 pub(super) fn whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let target = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let folder = target.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let attempt = || -> std::io::Result<()> {
-        let mut file = tempfile::Builder::new().prefix(".maquette-").tempfile_in(folder)?;
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".maquette-");
+        ordinary(&mut builder);
+        let mut file = builder.tempfile_in(folder)?;
         file.write_all(bytes)?;
         file.as_file().sync_all()?;
-        readable_by_all(file.as_file())?;
-        file.persist(path)?;
+        if let Ok(there) = std::fs::metadata(&target) {
+            file.as_file().set_permissions(there.permissions())?;
+        }
+        file.persist(&target)?;
         Ok(())
     };
     attempt().map_err(|error| {
-        let hint = if folder.is_dir() { "" } else { "; the folder does not exist: create it first" };
-        format!("{}: it can't be written: {error}{hint}", path.display())
+        let reason = if folder.is_dir() {
+            // Without the name of the temporary file, which means nothing to anybody.
+            std::io::Error::from(error.kind()).to_string()
+        } else {
+            "the folder does not exist; create it first".to_owned()
+        };
+        format!("{}: it can't be written: {reason}", path.display())
     })
 }
 
-/// A temporary file is private; a result is an ordinary file.
+/// A temporary file is private by default; a result is an ordinary file, as private as the umask says.
 #[cfg(unix)]
-fn readable_by_all(file: &std::fs::File) -> std::io::Result<()> {
+fn ordinary(builder: &mut tempfile::Builder<'_, '_>) {
     use std::os::unix::fs::PermissionsExt as _;
-    file.set_permissions(std::fs::Permissions::from_mode(0o644))
+    builder.permissions(std::fs::Permissions::from_mode(0o666));
 }
 
 #[cfg(not(unix))]
-fn readable_by_all(_: &std::fs::File) -> std::io::Result<()> {
-    Ok(())
-}
+fn ordinary(_: &mut tempfile::Builder<'_, '_>) {}

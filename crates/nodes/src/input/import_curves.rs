@@ -40,18 +40,27 @@ impl Anchor {
     }
 }
 
+/// Metres of a pixel: SVG has 96 of them an inch.
+const LIFE_SIZE: f64 = 0.0254 / 96.0;
+
 pub(crate) fn kind() -> NodeKind {
     let mut node = NodeKind::declare(
         "import-curves",
         1,
         "input",
-        "Curves of a file: contours or sections as JSON, or the paths of an SVG drawing placed on a view plane.",
+        "Curves of a file: contours or sections as JSON, or the paths of an SVG drawing placed on a view plane. The JSON is \
+         {\"contours\": [{\"name\": \"left\", \"closed\": false, \"points\": [[x, y, z], ..]}]}, metres.",
     );
     let file = node.file("file", &["json", "svg"], "The file, .json or .svg.");
     let plane = node.choice::<ViewPlane>("plane", "SVG: the plane on which the drawing is placed.");
     let offset = node.length("offset", 0.0, -1e4..=1e4, "SVG: place of the plane along the axis across it.");
     node.soft_range(offset, -1.0..=1.0);
-    let scale = node.length("scale", 0.001, 1e-9..=1e6, "SVG: length of one unit of the drawing.");
+    let scale = node.length(
+        "scale",
+        LIFE_SIZE,
+        1e-9..=1e6,
+        "SVG: length of one pixel of the drawing, of which 96 make an inch; by default it comes in life-size.",
+    );
     node.soft_range(scale, 1e-4..=0.1);
     let anchor = node.choice::<Anchor>("anchor", "SVG: which point of the drawing lies on the plane's origin.");
     let tolerance =
