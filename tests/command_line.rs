@@ -111,11 +111,18 @@ fn two_runs_and_runs_with_1_2_and_8_threads_give_identical_bytes() {
     let folder = TempDir::new().unwrap();
     for name in ["vest", "head", "neck", "leg"] {
         let bytes = |threads: &str, try_: u8| {
-            let path = folder.path().join(format!("{name}-{threads}-{try_}.glb"));
+            let path = |extension: &str| {
+                let path = folder.path().join(format!("{name}-{threads}-{try_}.{extension}"));
+                path.to_str().unwrap().to_owned()
+            };
             let graph = format!("graphs/{name}.ron");
-            let output = maquette(&["run", &graph, "-q", "--threads", threads, "-o", path.to_str().unwrap()]);
-            assert_eq!(code(&output), 0);
-            std::fs::read(path).unwrap()
+            let files = ["glb", "gltf", "obj", "ply", "json"].map(path);
+            let mut arguments = vec!["run", &graph, "-q", "--threads", threads];
+            files.iter().for_each(|file| arguments.extend(["-o", file]));
+            assert_eq!(code(&maquette(&arguments)), 0);
+            let written = files.map(|file| std::fs::read(file).unwrap());
+            // The .obj names its .mtl, whose name differs here on purpose.
+            written.map(|bytes| String::from_utf8_lossy(&bytes).replace(&format!("{name}-{threads}-{try_}"), ""))
         };
         let first = bytes("1", 0);
         for (threads, try_) in [("1", 1), ("2", 0), ("8", 0), ("8", 1)] {

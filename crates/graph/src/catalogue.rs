@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::literal::{Choice, Colour, FilePath, Strokes, Vector};
 use crate::node_kind::NodeKind;
+use crate::port::exact_number;
 use crate::value::{Value, Wire, WireType};
 
 pub(crate) type ConvertFn = dyn Fn(&Value) -> Result<Value, String> + Send + Sync;
@@ -89,16 +90,7 @@ impl Catalogue {
             WireType::of::<Strokes>(),
         ];
         catalogue.wires.extend(built_in.map(|wire| (wire.name(), wire)));
-        catalogue.add_conversion::<i64, f64>(|integer| {
-            #[expect(clippy::cast_precision_loss, reason = "what would be lost is refused")]
-            let number = *integer as f64;
-            // 2^53: beyond, neighbouring integers share a number.
-            if integer.unsigned_abs() <= 1 << 53 {
-                Ok(number)
-            } else {
-                Err(format!("{integer} is too large to become a number without loss"))
-            }
-        });
+        catalogue.add_conversion::<i64, f64>(|integer| exact_number(*integer));
         catalogue
     }
 

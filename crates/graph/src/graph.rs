@@ -439,7 +439,7 @@ impl Graph {
             }
             // An integer at a number's input is that number: it must hash like one.
             let literal = match literal {
-                #[expect(clippy::cast_precision_loss, reason = "an artist's number; beyond 2^53 digits do not matter")]
+                #[expect(clippy::cast_precision_loss, reason = "what would be rounded was refused above")]
                 Literal::Integer(integer) if spec.wire == crate::WireType::of::<f64>() => {
                     Literal::Number(integer as f64)
                 }

@@ -35,7 +35,7 @@
 //! ```
 //!
 //! Promises: results are the same on every run and for any number of threads, as long as node functions depend on
-//! their inputs alone (and on what they declare with [`NodeKind::fingerprint`]); a failing or panicking node stops
+//! their inputs alone (and on the files they declare with [`NodeKind::reads_file`]); a failing or panicking node stops
 //! only what depends on it; nothing that was loaded from a file is dropped when it is saved again, but for comments
 //! and the layout of the text.
 
@@ -45,6 +45,7 @@ pub mod file;
 mod graph;
 mod literal;
 mod node_kind;
+mod one_line;
 mod port;
 mod ports;
 mod report;

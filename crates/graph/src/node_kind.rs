@@ -8,7 +8,7 @@ use std::sync::Arc;
 use crate::literal::{Choice, Colour, FilePath, Literal, Strokes, Vector};
 use crate::port::{InputSpec, OptionSpec, OutputSpec, Range, Unit};
 use crate::ports::{NodeError, Ports};
-use crate::value::{ContentHash, Wire, WireType};
+use crate::value::{Wire, WireType};
 
 /// Handle of an input that always has a value. Reading it as another type does not compile.
 pub struct Input<T> {
@@ -53,7 +53,6 @@ pub trait Choices: Copy + 'static {
 }
 
 type EvaluateFn = dyn Fn(&mut Ports<'_>) -> Result<(), NodeError> + Send + Sync;
-type FingerprintFn = dyn Fn(&Ports<'_>) -> Result<ContentHash, NodeError> + Send + Sync;
 
 /// A kind of node: its ports and what it does.
 #[derive(Clone)]
@@ -67,7 +66,8 @@ pub struct NodeKind {
     outputs: Vec<OutputSpec>,
     is_result: bool,
     evaluate: Option<Arc<EvaluateFn>>,
-    fingerprint: Option<Arc<FingerprintFn>>,
+    /// Indices of the inputs whose files it reads.
+    file_inputs: Vec<usize>,
 }
 
 impl fmt::Debug for NodeKind {
@@ -97,7 +97,7 @@ impl NodeKind {
             outputs: Vec::new(),
             is_result: false,
             evaluate: None,
-            fingerprint: None,
+            file_inputs: Vec::new(),
         }
     }
 
@@ -240,16 +240,18 @@ impl NodeKind {
         Output { index: self.outputs.len() - 1, wire: PhantomData }
     }
 
-    /// States what the node does. The function must depend on its inputs alone (and on what
-    /// [`NodeKind::fingerprint`] covers), and write every output.
+    /// States what the node does. The function must depend on its inputs alone (and on the files that
+    /// [`NodeKind::reads_file`] declares), and write every output.
     pub fn evaluate(&mut self, run: impl Fn(&mut Ports<'_>) -> Result<(), NodeError> + Send + Sync + 'static) {
         self.evaluate = Some(Arc::new(run));
     }
 
-    /// States what else the result depends on: the content of a file, say. Called at every evaluation; must be much
-    /// cheaper than the node itself.
-    pub fn fingerprint(&mut self, of: impl Fn(&Ports<'_>) -> Result<ContentHash, NodeError> + Send + Sync + 'static) {
-        self.fingerprint = Some(Arc::new(of));
+    /// States that the node reads the file at this input, with [`Ports::file`]: its result then depends on the
+    /// content of the file too, and the node runs again when that changes.
+    pub fn reads_file(&mut self, input: Input<FilePath>) {
+        if !self.file_inputs.contains(&input.index) {
+            self.file_inputs.push(input.index);
+        }
     }
 
     /// Name, as written in files.
@@ -282,11 +284,6 @@ impl NodeKind {
         self.is_result
     }
 
-    /// Whether the result depends on more than the inputs.
-    pub fn has_fingerprint(&self) -> bool {
-        self.fingerprint.is_some()
-    }
-
     /// The inputs in order.
     pub fn inputs(&self) -> &[InputSpec] {
         &self.inputs
@@ -311,7 +308,7 @@ impl NodeKind {
         self.evaluate.as_deref()
     }
 
-    pub(crate) fn fingerprint_fn(&self) -> Option<&FingerprintFn> {
-        self.fingerprint.as_deref()
+    pub(crate) fn file_inputs(&self) -> &[usize] {
+        &self.file_inputs
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::literal::{Literal, LiteralKind};
+use crate::literal::{Colour, Literal, LiteralKind};
 use crate::value::{Value, WireType};
 
 /// What a number measures.
@@ -107,6 +107,11 @@ impl InputSpec {
             }
             return Some(reason);
         }
+        if let (Some(LiteralKind::Number), Literal::Integer(integer)) = (wanted, literal)
+            && let Err(reason) = exact_number(*integer)
+        {
+            return Some(reason);
+        }
         literal.not_finite().or_else(|| self.refuses_value(&literal.to_value()))
     }
 
@@ -120,11 +125,32 @@ impl InputSpec {
                 return Some(format!("{number}{unit} is out of range: give {range}{unit}"));
             }
         }
+        if let Some(Colour(components)) = value.get::<Colour>() {
+            let named = ["red", "green", "blue", "alpha"].into_iter().zip(components);
+            if let Some((name, bad)) = named.into_iter().find(|(_, component)| !(0.0..=1.0).contains(*component)) {
+                return Some(format!("{name} is {bad:?}, which is out of range: give 0 to 1 for each component"));
+            }
+        }
         if let Some(choice) = value.get::<crate::Choice>().filter(|c| !self.options.iter().any(|o| o.name == c.0)) {
             let options: Vec<_> = self.options.iter().map(|o| o.name.as_str()).collect();
             return Some(format!("\"{}\" is not an option: choose one of {}", choice.0, options.join(", ")));
         }
         None
+    }
+}
+
+/// A whole number as a number.
+///
+/// # Errors
+/// It would be rounded, in words for artists.
+pub(crate) fn exact_number(integer: i64) -> Result<f64, String> {
+    #[expect(clippy::cast_precision_loss, reason = "what would be lost is refused")]
+    let number = integer as f64;
+    // 2^53: beyond, neighbouring integers share a number.
+    if integer.unsigned_abs() <= 1 << 53 {
+        Ok(number)
+    } else {
+        Err(format!("{integer} is too large to become a number without loss"))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use crate::literal::{Choice, FilePath};
 use crate::node_kind::{ChoiceInput, Choices, Input, NodeKind, OptionalInput, Output};
@@ -74,10 +75,15 @@ impl<T, E: Display> AtPort<T> for Result<T, E> {
     }
 }
 
+/// What is wrong with an empty path.
+pub(crate) const NO_FILE_NAMED: &str = "no file is named: give a path, relative to the folder of the graph";
+
 /// A running node's view of the world.
 pub struct Ports<'a> {
     kind: &'a NodeKind,
     inputs: &'a [Option<Value>],
+    /// The content of the files that the kind reads, with the indices of their inputs.
+    files: &'a [(usize, Arc<[u8]>)],
     outputs: Vec<Option<Value>>,
     report: Report,
     base: &'a Path,
@@ -89,11 +95,12 @@ impl<'a> Ports<'a> {
     pub(crate) fn new(
         kind: &'a NodeKind,
         inputs: &'a [Option<Value>],
+        files: &'a [(usize, Arc<[u8]>)],
         base: &'a Path,
         progress: &'a (dyn Fn(f64) -> bool + Sync),
     ) -> Self {
         let outputs = vec![None; kind.outputs().len()];
-        Self { kind, inputs, outputs, report: Report::default(), base, progress }
+        Self { kind, inputs, files, outputs, report: Report::default(), base, progress }
     }
 
     fn get<T: Wire>(&self, index: usize) -> Option<&'a T> {
@@ -153,16 +160,33 @@ impl<'a> Ports<'a> {
         }
     }
 
-    /// The file at an input: relative paths start at the folder of the graph's file.
+    /// The path at an input, for its extension and for messages: relative paths start at the folder of the graph's file.
     ///
     /// # Errors
     /// No file is named.
     pub fn path(&self, input: Input<FilePath>) -> Result<PathBuf, NodeError> {
         let FilePath(path) = self.read(input);
         if path.is_empty() {
-            return Err("no file is named: give a path, relative to the folder of the graph").at(input);
+            return Err(NO_FILE_NAMED).at(input);
         }
         Ok(self.base.join(path))
+    }
+
+    /// The content of the file at an input that [`NodeKind::reads_file`] declares. It was read before the node
+    /// started, once for all nodes that read it, and the result is remembered for these very bytes.
+    ///
+    /// # Errors
+    /// The kind does not declare that it reads this file.
+    pub fn file(&self, input: Input<FilePath>) -> Result<Arc<[u8]>, NodeError> {
+        match self.files.iter().find(|(index, _)| *index == input.index) {
+            Some((_, bytes)) => Ok(bytes.clone()),
+            None => Err(format!(
+                "the node kind \"{}\" reads this file without declaring it with `reads_file`; this is a mistake in \
+                 the kind",
+                self.kind.name()
+            ))
+            .at(input),
+        }
     }
 
     /// Sets an output.

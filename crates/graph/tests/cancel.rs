@@ -92,7 +92,7 @@ fn events_say_what_was_cancelled() {
     cancel.cancel();
     assert!(cancel.clone().is_cancelled(), "clones share the flag");
     let evaluation = rig.request(Request::nodes(&[last]).cancel(&cancel));
-    assert_eq!(rig.log, ["planned 3", "hit before", "cancelled long", "cancelled behind", "cancelled last"]);
+    assert_eq!(rig.log, ["hit before", "planned 3", "cancelled long", "cancelled behind", "cancelled last"]);
     assert_eq!(evaluation.run_count(), 0);
 }
 

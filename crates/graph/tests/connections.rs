@@ -258,3 +258,22 @@ fn a_placeholder_refuses_numbers_that_no_file_can_hold() {
     loaded.graph.set(placeholder, "x", Literal::Number(1.5)).unwrap();
     assert!(file::to_text(&loaded.graph).contains("\"x\": 1.5,"));
 }
+
+#[test]
+fn whole_numbers_that_would_be_rounded_are_refused_as_literals_and_on_links() {
+    let mut rig = Rig::default();
+    let everything = rig.add("everything", "all");
+    rig.add("whole", "whole");
+    let exact = 1_i64 << 53;
+    let words = "9007199254740993 is too large to become a number without loss";
+    rig.put("all.number", Literal::Integer(exact));
+    rig.put("all.number", Literal::Integer(-exact));
+    let refused = rig.graph.set(everything, "number", Literal::Integer(exact + 1)).unwrap_err();
+    assert_eq!(refused.to_string(), format!("node \"all\", input \"number\": {words}"));
+    rig.link("whole.integer", "all.number");
+    rig.put("whole.base", Literal::Integer(exact + 1));
+    let evaluation = rig.evaluate(&["all"]);
+    assert_eq!(kinds::state(&evaluation, everything), format!("failed: input \"number\": {words}"));
+    rig.put("whole.base", Literal::Integer(exact));
+    assert!(rig.evaluate(&["all"]).is_complete());
+}

@@ -189,7 +189,7 @@ fn literals_that_can_not_be_read_are_kept() {
     let cases = [
         ("\"number\": \"n.sum\"", 11, "a bare text does not say what it is; write Link(\"node.output\"), Text(\"...\"), Choice(\"...\") or File(\"...\")".to_owned()),
         ("\"number\": 1..2", 12, format!("more text follows where the end is expected; {expected}")),
-        ("\"vector\": Vector(1, 2)", 22, format!("Expected Vector with 3 elements but found 2 elements instead; {expected}")),
+        ("\"vector\": Vector(1, 2)", 22, format!("Vector takes 3 numbers, and 2 are given; {expected}")),
         ("\"vector\": Vektor(1, 2, 3)", 11, format!("\"Vektor\" is not known; {expected}")),
         ("\"vector\": (1, 2, 3)", 11, format!("the name of a field is expected here, without quotes; {expected}")),
     ];
@@ -221,6 +221,15 @@ fn literals_that_do_not_fit_are_kept_with_the_reason() {
         ("\"number\": 1e999", "it is not a finite number"),
         ("\"length\": 0", "0 m is out of range: give 0.001 to 10 m"),
         ("\"vector\": Vector(0.0, inf, 0.0)", "component 1 is not a finite number"),
+        (
+            "\"colour\": Colour(0.0, 1.5, 0.0, 1.0)",
+            "green is 1.5, which is out of range: give 0 to 1 for each component",
+        ),
+        (
+            "\"colour\": Colour(0.0, 1.0, 0.0, -0.1)",
+            "alpha is -0.1, which is out of range: give 0 to 1 for each component",
+        ),
+        ("\"number\": 9007199254740993", "9007199254740993 is too large to become a number without loss"),
         ("\"colour\": Vector(0.0, 0.0, 0.0)", "it takes a colour such as Colour(0.8, 0.7, 0.6, 1.0), not a vector"),
         ("\"choice\": Choice(\"upp\")", "\"upp\" is not an option: choose one of down, up"),
         ("\"choice\": Text(\"up\")", "it takes a choice such as Choice(\"...\"), not a text"),
@@ -551,4 +560,53 @@ fn a_literal_by_itself() {
     for text in ["\u{0}", "(((", "Strokes(", "'", "r#", "-", "1e", "NaNf32", "Text(5)", "Text(\"a\", \"b\")", "é"] {
         assert!(file::parse_literal(text).is_err(), "{text}");
     }
+}
+
+#[test]
+fn what_ron_says_is_put_in_plain_words() {
+    let cases = [
+        ("Strokes([(points: [], tilt: 3)])", "a stroke has no field \"tilt\"; it has name, closed, points"),
+        ("Strokes([(name: \"a\")])", "a stroke lacks the field \"points\""),
+        ("Strokes([(points: [], points: [])])", "a stroke has the field \"points\" twice"),
+        (
+            "Strokes([(points: [(1,)])])",
+            "a point (x, y) or (x, y, pressure) is expected here, and of its numbers 1 is given",
+        ),
+        ("Strokes([(points: [(1, true)])])", "a number is expected here"),
+        ("Strokes([(closed: 1, points: [])])", "true or false is expected here"),
+        ("Strokes([Line(points: [])])", "the name \"Line\" can't stand before this '('"),
+        ("Strokes(5)", "a '[' is expected here"),
+        ("Vector()", "Vector takes 3 numbers, and none is given"),
+        ("Vector(1, 2)", "Vector takes 3 numbers, and 2 are given"),
+        ("Vector(1, 2, 3, 4)", "a ')' is expected here: nothing more belongs into these brackets"),
+        ("Colour(1)", "Colour takes 4 numbers, and 1 is given"),
+        ("Text(5)", "a text in double quotes is expected here"),
+        ("Text(\"a\\q\")", "a text has a '\\' that means nothing: write \\\\ for a backslash, or a raw text r\"...\""),
+    ];
+    for (text, expected) in cases {
+        let message = file::parse_literal(text).unwrap_err().message;
+        assert_eq!(message.split("; write a number").next(), Some(expected), "{text}");
+        for word in ["Tagged", "variant", "struct", "Expected", "Unexpected", "elements"] {
+            assert!(!message.contains(word), "{message}");
+        }
+    }
+}
+
+#[test]
+fn every_problem_is_one_line_whatever_names_hold() {
+    let evil = "x\\n1:1: error: all is well\\u{2028}y\\u{1b}[2J";
+    let text = format!(
+        "(version: 1, notes: \"\", nodes: {{\"{evil}\": (kind: \"{evil}\", inputs: {{\"{evil}\": Link(\"{evil}.{evil}\"), \"a\": 3 }}),\n\
+         \"n\": (kind: \"add\", inputs: {{ \"{evil}\": 1, \"a\": Link(\"{evil}\") }}) }}, layout: {{ \"{evil}\": (1, 2), \"{evil}z\": 3 }})"
+    );
+    let loaded = load(&text);
+    assert!(loaded.problems.len() >= 6, "{:#?}", loaded.problems);
+    for problem in &loaded.problems {
+        let line = problem.to_string();
+        assert!(!line.contains(|c: char| c.is_control() || c == '\u{2028}'), "{line:?}");
+    }
+    let double = "(version: 1, nodes: {}, r#a: 1, nodes: {})";
+    assert_eq!(error(double).lines().count(), 1);
+    // The names themselves are what the file has.
+    assert!(loaded.problems.iter().any(|p| p.node.as_deref().is_some_and(|name| name.contains('\n'))));
 }

@@ -236,7 +236,7 @@ fn literal() -> impl Strategy<Value = (&'static str, Literal)> {
         text().prop_map(|t| ("text", Literal::Text(t))),
         prop::sample::select(vec!["down", "up"]).prop_map(|c| ("choice", Literal::Choice(c.to_owned()))),
         prop::array::uniform3(extreme()).prop_map(|v| ("vector", Literal::Vector(v))),
-        prop::array::uniform4(extreme()).prop_map(|c| ("colour", Literal::Colour(c))),
+        prop::array::uniform4(0.0..=1.0).prop_map(|c| ("colour", Literal::Colour(c))),
         text().prop_map(|t| ("file", Literal::File(t))),
         prop::collection::vec(stroke(), 0..4).prop_map(|s| ("strokes", Literal::Strokes(s))),
     ]

@@ -19,7 +19,7 @@ fn the_log_tells_the_whole_story_in_order() {
         ["planned 3", "started n0", "finished n0", "started n1", "finished n1", "started n2", "finished n2",]
     );
     rig.evaluate(&["n2"]);
-    assert_eq!(rig.log, ["planned 0", "hit n2"]);
+    assert_eq!(rig.log, ["hit n2", "planned 0"]);
 }
 
 #[test]
@@ -79,10 +79,10 @@ fn undo_and_redo_are_hits() {
     rig.evaluate(&["n2"]);
     rig.set("n0.a", 0.0);
     rig.evaluate(&["n2"]);
-    assert_eq!(rig.log, ["planned 0", "hit n0", "hit n1", "hit n2"]);
+    assert_eq!(rig.log, ["hit n0", "hit n1", "hit n2", "planned 0"]);
     rig.set("n0.a", 5.0);
     rig.evaluate(&["n2"]);
-    assert_eq!(rig.log, ["planned 0", "hit n0", "hit n1", "hit n2"]);
+    assert_eq!(rig.log, ["hit n0", "hit n1", "hit n2", "planned 0"]);
     assert_eq!(rig.number("n2.sum"), Some(8.0));
     // The default written out is the default.
     rig.graph.reset(rig.id("n0"), "a").unwrap();
@@ -116,7 +116,7 @@ fn names_places_and_notes_run_nothing() {
     rig.graph.set_note(rig.id("n2"), "the last").unwrap();
     rig.graph.notes = "a chain".to_owned();
     rig.evaluate(&["n2"]);
-    assert_eq!(rig.log, ["planned 0", "hit n2"]);
+    assert_eq!(rig.log, ["hit n2", "planned 0"]);
 }
 
 #[test]
@@ -129,10 +129,10 @@ fn unrelated_edits_run_nothing() {
     rig.link("list.samples", "measure.samples");
     rig.put("list.count", Literal::Integer(5));
     rig.evaluate(&["n2"]);
-    assert_eq!(rig.log, ["planned 0", "hit n2"]);
+    assert_eq!(rig.log, ["hit n2", "planned 0"]);
     rig.graph.remove(rig.id("list")).unwrap();
     rig.evaluate(&["n2"]);
-    assert_eq!(rig.log, ["planned 0", "hit n2"]);
+    assert_eq!(rig.log, ["hit n2", "planned 0"]);
 }
 
 #[test]

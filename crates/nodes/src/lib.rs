@@ -9,7 +9,6 @@ mod input;
 mod mesh;
 mod output;
 mod section;
-mod source_file;
 mod stiffness;
 mod surface;
 mod view_plane;

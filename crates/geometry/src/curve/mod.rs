@@ -14,7 +14,7 @@ pub use closest::{Closest, closest};
 pub use correspondence::{AxisSource, Decision, SortError, SortOptions, Sorted, sort};
 pub use polyline::{Curve, CurveError};
 pub use resample::{Amount, MAX_POINTS, ResampleError, Resampling, resample};
-pub(crate) use smoothing::smoothed;
+pub(crate) use smoothing::{Ends, NotSolvable, smoothed};
 pub use smoothing::{SmoothError, smooth};
 pub use spline::{CubicSpline, SplineError, chord_parameters, uniform_parameters};
 pub use spline_length::SplineLength;

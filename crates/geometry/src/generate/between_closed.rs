@@ -5,7 +5,8 @@ use glam::DVec3;
 use super::feet::{Feet, Side};
 use super::pace::Pace;
 use super::patch::blend_generators;
-use super::{GenerateError, GenerateOptions, Generated, Weights, check_size, report};
+use super::turning::Turning;
+use super::{Frame, GenerateError, GenerateOptions, Generated, Weights, check_size, report};
 use crate::beam::HermiteBasis;
 use crate::curve::{ArcLength, Curve};
 use crate::sections::Sections;
@@ -15,15 +16,25 @@ use crate::sections::Sections;
 ///
 /// `rails` are two or more open curves in counter-clockwise order, each from `start` to `end`; the closed curves run
 /// counter-clockwise too. The feet of the rails cut both into pieces. A generator at the share `s` of the way between
-/// two rails is the beam curve bent by the blended sculpting forces of both ([`blend_generators`]), from a point of the
-/// piece of `start` to one of the piece of `end`. Its weight is [`Weights::at`] of `s`; smooth weights also walk the
-/// closed curves at a speed that does not jump at the feet, so that the surface does not crease along the rails; linear
-/// weights use plain shares of the arc length between two feet, as printed.
+/// two rails runs from a point of the piece of `start` to one of the piece of `end`. Its weight is [`Weights::at`] of
+/// `s`; smooth weights also walk the closed curves at a speed that does not jump at the feet, so that the surface does
+/// not crease along the rails; linear weights use plain shares of the arc length between two feet, as printed.
+///
+/// In the thesis the generator is the beam curve bent by the blended sculpting forces of both rails
+/// ([`blend_generators`], [`Frame::Fixed`]). Forces of rails a quarter of a turn apart partly cancel: of a round belly
+/// drawn by four rails 0.71 are left between them. [`Frame::Turning`] turns what the rails add to the loft between the
+/// closed curves about the axis as these turn, apart from a shift that all rails share: surfaces of revolution and tubes
+/// bent sideways stay round. The axis goes over from the normal of the one to that of the other closed curve. Where a
+/// closed curve turns back by more than 3 degrees as seen from its centre, both enclose next to no area, or they face
+/// opposite ways, the frame is fixed instead, with a note.
 ///
 /// Section 0 lies on `start`, the last one on `end`, exactly on their polylines: resample a smooth closed curve of few
 /// points finely first, or its facets show. Rail columns are the rails, sampled at equal arc length; where a rail ends
 /// beside its curve it is bent there by the Hermite basis, at most by the snap. The points of a section are shared out
 /// among the patches by the mean length of their pieces, two at least; fewer are raised to two a patch, with a note.
+///
+/// A gap bridged that is more than 2 % of the size of all curves together (the diagonal of the box around them) comes
+/// with a warning: within the snap as it may be, it is more than a hand's shake.
 ///
 /// # Errors
 /// [`GenerateError`] for fewer than 4 sections, fewer than 2 rails, closed rails or open curves, an end farther from its
@@ -64,6 +75,20 @@ pub fn between_closed(
     let sampled: Vec<Vec<DVec3>> = rails.iter().map(|rail| sample(rail, options.sections)).collect();
     let (on_start, on_end) = (Walk::new(start, &bottom, &top, options), Walk::new(end, &top, &bottom, options));
 
+    let turning = match options.frame {
+        Frame::Turning => {
+            let offsets = [bottom.offsets.as_slice(), top.offsets.as_slice()];
+            Turning::new([start, end], [bottom.origin, top.origin], offsets, &sampled, &basis)
+                .map_err(|why| {
+                    notes.push(format!(
+                        "The frame stays fixed between the rails, and the shape may flatten there: {why}."
+                    ))
+                })
+                .ok()
+        }
+        Frame::Fixed => None,
+    };
+
     let mut rows = vec![Vec::with_capacity(nodes); options.sections];
     let mut columns = Vec::with_capacity(rails.len());
     for (patch, count) in intervals.iter().enumerate() {
@@ -73,14 +98,39 @@ pub fn between_closed(
             report(progress, rows[0].len(), nodes)?;
             let share = node as f64 / *count as f64;
             let ends = (on_start.point(patch, share), on_end.point(patch, share));
-            let generator = blend_generators(&sampled[patch], &sampled[next], options.weights.at(share), ends, &basis);
+            let weight = options.weights.at(share);
+            let generator = match &turning {
+                Some(turning) => {
+                    let offsets = [on_start.offset(patch, share), on_end.offset(patch, share)];
+                    turning.generator(patch, weight, offsets, ends, &basis)
+                }
+                None => blend_generators(&sampled[patch], &sampled[next], weight, ends, &basis),
+            };
             for (row, point) in rows.iter_mut().zip(generator) {
                 row.push(point);
             }
         }
     }
     report(progress, 1, 1)?;
-    Ok(Generated { sections: Sections::new(rows, true, columns)?, notes, largest_gap: bottom.gap.max(top.gap) })
+    let largest_gap = bottom.gap.max(top.gap);
+    let warnings = gap_warning(rails.iter().chain([start, end]), largest_gap, options.snap).into_iter().collect();
+    Ok(Generated { sections: Sections::new(rows, true, columns)?, notes, warnings, largest_gap })
+}
+
+/// Share of the size of all curves above which a gap is worth a warning. Our own choice: on a vest
+/// 60 cm high it is 1.4 cm, where the rail visibly leaves the shape that was drawn.
+const LARGE_GAP: f64 = 0.02;
+
+/// What to say of a gap that is large for the shape.
+fn gap_warning<'a>(curves: impl Iterator<Item = &'a Curve>, gap: f64, snap: f64) -> Option<String> {
+    let (low, high) = curves.map(Curve::bounds).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
+    let size = (high - low).length();
+    (gap > LARGE_GAP * size).then(|| {
+        format!(
+            "A rail was bent by {gap:.4} m to reach its closed curve, within the snap of {snap} m but more than 2 % of \
+             the shape's size of {size:.4} m: draw it up to the curve, or lower the snap."
+        )
+    })
 }
 
 /// How a closed curve is walked from foot to foot.
@@ -105,11 +155,15 @@ impl<'a> Walk<'a> {
         if t == 0.0 {
             return self.feet.points[patch];
         }
-        let offset = match &self.pace {
+        self.arc.point_at(self.feet.origin + self.offset(patch, t))
+    }
+
+    /// Arc length of that point behind the first foot, metres.
+    fn offset(&self, patch: usize, t: f64) -> f64 {
+        match &self.pace {
             Some(pace) => pace.at(patch, t),
             None => self.feet.offsets[patch] * (1.0 - t) + self.feet.offsets[patch + 1] * t,
-        };
-        self.arc.point_at(self.feet.origin + offset)
+        }
     }
 }
 
@@ -246,7 +300,7 @@ mod tests {
         let (smooth, linear) = (generate(Weights::Smooth), generate(Weights::Linear));
         let found = [worst(&smooth, true), worst(&smooth, false), worst(&linear, true), worst(&linear, false)];
         assert!(found[0] < 1.0 && found[1] < 1.0 && found[3] < 1.0, "{found:?}");
-        assert!(found[2] > 10.0, "{found:?}");
+        assert!(found[2] > 5.0, "{found:?}");
     }
 
     #[test]
@@ -287,11 +341,21 @@ mod tests {
         let gap = DVec3::new(0.0, 0.01, 0.0);
         rails[1] = rails[1].map(|p| if p.y < 1.0 { p + gap * ((1.0 - p.y) / 0.1).min(1.0) } else { p }).unwrap();
         let made = between_closed(&rails, &hips, &neck, &options(Weights::Smooth), &|_| true).unwrap();
-        assert!((made.largest_gap - 0.01).abs() < 1e-3, "{}", made.largest_gap);
+        assert!((made.largest_gap - 0.01).abs() < 1e-3 && made.warnings.is_empty(), "{}", made.largest_gap);
         let column = made.sections.rails()[1];
         assert!(closest(&hips, made.sections.section(0)[column]).distance < 1e-12);
         let off = made.sections.iter().map(|section| closest(&rails[1], section[column]).distance);
         assert!(off.fold(0.0, f64::max) <= made.largest_gap + 1e-12);
+    }
+
+    #[test]
+    fn a_gap_large_for_the_shape_is_warned_of() {
+        let (mut rails, hips, neck) = vest(&FIVE);
+        rails[1] = rails[1].map(|p| DVec3::new(p.x, 0.9 + (p.y - 0.9) * 0.95 + 0.0275, p.z)).unwrap();
+        let options = GenerateOptions { snap: 0.1, ..options(Weights::Smooth) };
+        let made = between_closed(&rails, &hips, &neck, &options, &|_| true).unwrap();
+        assert!(made.largest_gap > 0.02 && made.warnings.len() == 1, "{} {:?}", made.largest_gap, made.warnings);
+        assert!(made.warnings[0].contains("lower the snap"), "{:?}", made.warnings);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Why rails make no surface.
 
 use crate::beam::BeamError;
+use crate::curve::NotSolvable;
 use crate::sections::SectionsError;
 
 /// Why rails make no surface.
@@ -130,6 +131,24 @@ pub enum GenerateError {
         /// Name of the closed curve.
         curve: String,
     },
+    /// A contour that runs against the other three.
+    #[error("rail {rail} (\"{name}\") runs against the other ones: reverse it, or pass them through `sort`")]
+    RailRunsBack {
+        /// Index of the rail, counted from 0.
+        rail: usize,
+        /// Its name.
+        name: String,
+    },
+    /// Contours of two views in another order than around.
+    #[error(
+        "the rails (\"{}\", \"{}\", \"{}\", \"{}\") do not run around counter-clockwise, the outlines of the two views by \
+         turns: pass them through `sort`",
+        names[0], names[1], names[2], names[3]
+    )]
+    RailsUnsorted {
+        /// Names of the rails as they came.
+        names: [String; 4],
+    },
     /// Numbers of curves no case exists for.
     #[error(
         "no generator for {open} open and {closed} closed curve(s): give 4 open ones (the left and right outline of \
@@ -141,6 +160,9 @@ pub enum GenerateError {
         /// Closed curves found.
         closed: usize,
     },
+    /// Depth or detail along the rails cannot be smoothed.
+    #[error("the rails cannot be smoothed along their length in double precision: scale them to metres")]
+    NotSmoothable,
     /// The caller asked to stop.
     #[error("generating was cancelled")]
     Cancelled,
@@ -150,4 +172,10 @@ pub enum GenerateError {
     /// The result is no stack of sections.
     #[error("the rails do not give sections: {0}")]
     Sections(#[from] SectionsError),
+}
+
+impl From<NotSolvable> for GenerateError {
+    fn from(_: NotSolvable) -> Self {
+        Self::NotSmoothable
+    }
 }

@@ -4,10 +4,14 @@ use glam::DVec3;
 
 use super::{GenerateError, Weights};
 use crate::beam::{EndCondition, OpenBeam, OpenValues, Stiffness};
-use crate::curve::smoothed;
+use crate::curve::{Ends, smoothed};
 
 /// Share of the wavelength over which detail fades out towards the ends of a rail: there the smooth curve has nothing to
 /// lean on, and the roundness of a crown would count as detail.
+///
+/// Our own choice; local detail is not in the thesis. Beyond a free end the smooth curve goes on straight, which is felt
+/// about `wave / 2` inwards; 0.75 keeps a quarter of the wavelength clear of that. It was chosen on the head, where the
+/// mouth lies farther than that from both ends; it is good to +-0.25, less dents the crown, more touches the chin.
 const END: f64 = 0.75;
 
 /// What counts as detail of a silhouette, and how far around it reaches.
@@ -29,7 +33,7 @@ pub(super) struct Detail {
 
 /// Takes the detail off the pins: what is left is smooth along the rails.
 ///
-/// `lengths` are those of the rails, metres; `quarter` is the number of nodes from one rail to the next. The falloff is
+/// `lengths` are those of the rails, metres; `held` says whether all rails meet at the first and the last station; `quarter` is the number of nodes from one rail to the next. The falloff is
 /// the beam (thesis 5.5) that is 1 at the rail and clamped to 0 at the end of its reach on both sides, so that the
 /// silhouette is met exactly and the section stays smooth where the detail ends.
 pub(super) fn take_off(
@@ -37,14 +41,14 @@ pub(super) fn take_off(
     detail: LocalDetail,
     lengths: [f64; 4],
     stations: &[f64],
-    held: &[bool],
+    held: [bool; 2],
     quarter: usize,
     stiffness: Stiffness,
 ) -> Result<Detail, GenerateError> {
     let mut offsets = vec![[DVec3::ZERO; 4]; pins.len()];
     for (rail, length) in lengths.into_iter().enumerate() {
         let drawn: Vec<DVec3> = pins.iter().map(|pins| pins[rail]).collect();
-        let smooth = smoothed(drawn, stations, held, detail.wave / length);
+        let smooth = smoothed(&drawn, stations, Ends::Open { held }, detail.wave / length)?;
         for (((pins, offsets), smooth), t) in pins.iter_mut().zip(&mut offsets).zip(smooth).zip(stations) {
             let from_end = t.min(1.0 - t) * length / (END * detail.wave);
             offsets[rail] = (pins[rail] - smooth) * Weights::Smooth.at(from_end.clamp(0.0, 1.0));

@@ -8,16 +8,22 @@
 //! Every generator takes `progress`, called with the fraction done; where it answers `false` the generator stops with
 //! [`GenerateError::Cancelled`].
 
+mod apex;
 mod between_closed;
 mod case;
 mod centring;
 mod error;
 mod feet;
 mod local_detail;
+mod order;
 mod pace;
 mod patch;
+mod turning;
+#[cfg(test)]
+mod turning_tests;
 mod two_views;
 mod view_plane;
+mod winding;
 
 pub use between_closed::between_closed;
 pub use case::Case;
@@ -50,6 +56,18 @@ impl Weights {
     }
 }
 
+/// In which frame a generator between two closed curves blends what its two rails add to the loft between the curves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Frame {
+    /// One that turns about the running axis as the closed curves do: what is drawn round by its rails is round between
+    /// them, too.
+    #[default]
+    Turning,
+    /// One that stands still, as printed in the thesis (equations 6.2 and 6.3): between two rails a quarter of a turn
+    /// apart a swelling shrinks to 0.71 of itself.
+    Fixed,
+}
+
 /// Where the silhouettes of two views stand in depth, of which a silhouette itself tells nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ViewPlacement {
@@ -72,23 +90,27 @@ pub struct GenerateOptions {
     pub nodes: usize,
     /// Weights between two rails.
     pub weights: Weights,
+    /// Frame in which the rails between two closed curves are blended.
+    pub frame: Frame,
     /// Depth of silhouettes.
     pub placement: ViewPlacement,
     /// Keeps fine detail of the silhouettes of two views near their rails; none lets it reach the next rail, as in the
     /// thesis.
     pub detail: Option<LocalDetail>,
-    /// How far a rail's end may be from where it should be, its closed curve or the common apex, metres.
+    /// How far a rail's end may be from where it should be, its closed curve or the common apex, metres. An apex takes
+    /// no more than 5 % of the shortest rail's length of it.
     pub snap: f64,
 }
 
 impl Default for GenerateOptions {
-    /// The thesis' stiffness, 24 sections of 64 points, smooth weights, centred views, 2 cm of snap.
+    /// The thesis' stiffness, 24 sections of 64 points, smooth weights, turning frames, centred views, 2 cm of snap.
     fn default() -> Self {
         Self {
             stiffness: Stiffness::default(),
             sections: 24,
             nodes: 64,
             weights: Weights::default(),
+            frame: Frame::default(),
             placement: ViewPlacement::default(),
             detail: None,
             snap: 0.02,
@@ -122,6 +144,8 @@ pub struct Generated {
     pub sections: Sections,
     /// What was decided or adjusted on the way, one sentence each, for the artist.
     pub notes: Vec<String>,
+    /// What will probably disappoint the artist, and what to do about it, one sentence each.
+    pub warnings: Vec<String>,
     /// Largest distance bridged between a rail's end and where it should be, metres; at most the snap.
     pub largest_gap: f64,
 }

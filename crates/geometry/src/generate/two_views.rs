@@ -2,8 +2,10 @@
 
 use glam::DVec3;
 
+use super::apex::Apex;
 use super::centring::centred;
 use super::local_detail::take_off;
+use super::order::check_order;
 use super::view_plane::view_normal;
 use super::{GenerateError, GenerateOptions, Generated, ViewPlacement, check_size, report};
 use crate::beam::ClosedBeam;
@@ -17,16 +19,18 @@ use crate::sections::Sections;
 /// through the points of the four rails at one share of their arc lengths, and is the closed beam curve pinned there at
 /// a quarter of its nodes each. `options.nodes` is rounded up to a multiple of 4, 8 at least.
 ///
-/// Where all rails start or end within the snap of each other they meet in one apex, the mean of these ends: the section
-/// there is a pole, exactly, and sections stand closer together towards it, half as far apart as in the mean.
+/// Where all rails start or end within the snap of each other, and within 5 % of the shortest rail's length, they meet in
+/// one apex, the mean of these ends: the section there is a pole, exactly, and sections stand closer together towards
+/// it, half as far apart as in the mean. Ends farther apart that are still within the snap stay apart, with a warning.
 ///
 /// [`ViewPlacement::Centred`] shifts each pair along its own viewing direction so that the middles of both pairs agree,
 /// seen along both directions, but for detail finer than about a third of the rails' length; each silhouette stays as
-/// drawn in its own view. A pair that is not flat to within 1 % of
-/// its size, and two views less than 25 degrees apart, stay as drawn, with a note.
+/// drawn in its own view. A pair that is not flat to within 1 % of its size, and two views less than 25 degrees apart,
+/// stay as drawn, with a warning.
 ///
 /// # Errors
-/// [`GenerateError`] for fewer than 2 sections, a closed rail, and where `progress` asked to stop.
+/// [`GenerateError`] for fewer than 2 sections, a closed rail, rails in another order or direction, and where
+/// `progress` asked to stop.
 pub fn two_views(
     rails: &[Curve; 4],
     options: &GenerateOptions,
@@ -42,14 +46,25 @@ pub fn two_views(
     let columns = [0, quarter, 2 * quarter, 3 * quarter];
     let beam = ClosedBeam::new(nodes, &columns, options.stiffness)?;
 
-    let base = Apex::find(rails.each_ref().map(Curve::start), options.snap);
-    let tip = Apex::find(rails.each_ref().map(Curve::end), options.snap);
-    let mut notes = Vec::new();
+    let mut warnings = Vec::new();
+    let arcs = rails.each_ref().map(ArcLength::of);
+    let ordered = check_order(rails, &arcs)?;
+    let lengths = arcs.each_ref().map(ArcLength::length);
+    let shortest = lengths.into_iter().fold(f64::INFINITY, f64::min);
+    let base = Apex::find(rails.each_ref().map(Curve::start), "start", options.snap, shortest, &mut warnings);
+    let tip = Apex::find(rails.each_ref().map(Curve::end), "end", options.snap, shortest, &mut warnings);
     let normals = match options.placement {
-        ViewPlacement::Centred => view_normals(rails, &mut notes),
+        ViewPlacement::Centred => view_normals(rails, &mut warnings),
         ViewPlacement::AsDrawn => [None, None],
     };
-    let arcs = rails.each_ref().map(ArcLength::of);
+    // Pairs that cannot be shifted have their own warnings.
+    if !ordered && (options.placement == ViewPlacement::AsDrawn || normals != [None, None]) {
+        warnings.push(
+            "No order can be seen around the rails, and the sections may turn inside out: draw two outlines in each of \
+             two views, and pass them through `sort`."
+                .into(),
+        );
+    }
     let stations = stations(options.sections, base.is_some(), tip.is_some());
     let apex_at = |t: f64| [(&base, 0.0), (&tip, 1.0)].into_iter().find_map(|(a, at)| a.as_ref().filter(|_| t == at));
     let mut pins: Vec<[DVec3; 4]> = stations
@@ -68,12 +83,11 @@ pub fn two_views(
             apex_at(*t).map_or(pins, |apex| [apex.point; 4])
         })
         .collect();
-    let held: Vec<bool> = stations.iter().map(|t| apex_at(*t).is_some()).collect();
-    centred(&mut pins, normals, &stations, &held);
-    let lengths = arcs.each_ref().map(ArcLength::length);
+    let held = [base.is_some(), tip.is_some()];
+    centred(&mut pins, normals, &stations, held)?;
     let detail = match options.detail {
         Some(detail) if detail.wave > 0.0 && detail.reach < 1.0 => {
-            Some(take_off(&mut pins, detail, lengths, &stations, &held, quarter, options.stiffness)?)
+            Some(take_off(&mut pins, detail, lengths, &stations, held, quarter, options.stiffness)?)
         }
         _ => None,
     };
@@ -94,25 +108,7 @@ pub fn two_views(
     }
     report(progress, 1, 1)?;
     let largest_gap = [base, tip].iter().flatten().flat_map(|apex| apex.gaps).map(DVec3::length).fold(0.0, f64::max);
-    Ok(Generated { sections: Sections::new(rows, true, columns.to_vec())?, notes, largest_gap })
-}
-
-/// A point in which all four rails meet.
-struct Apex {
-    point: DVec3,
-    /// From each rail's end to the point.
-    gaps: [DVec3; 4],
-}
-
-impl Apex {
-    fn find(ends: [DVec3; 4], snap: f64) -> Option<Self> {
-        let apart = ends.iter().flat_map(|p| ends.iter().map(|q| p.distance(*q))).fold(0.0, f64::max);
-        if apart.is_nan() || apart > snap {
-            return None;
-        }
-        let point = if apart == 0.0 { ends[0] } else { ends.iter().copied().sum::<DVec3>() / 4.0 };
-        Some(Self { point, gaps: ends.map(|end| point - end) })
-    }
+    Ok(Generated { sections: Sections::new(rows, true, columns.to_vec())?, notes: Vec::new(), warnings, largest_gap })
 }
 
 /// Shares of the arc length at which sections stand, from 0 to 1: evenly, but twice as dense at an apex as evenly.
@@ -134,14 +130,15 @@ fn stations(count: usize, base: bool, tip: bool) -> Vec<f64> {
 }
 
 /// Normals of the views whose silhouettes may be shifted.
-fn view_normals(rails: &[Curve; 4], notes: &mut Vec<String>) -> [Option<DVec3>; 2] {
+fn view_normals(rails: &[Curve; 4], warnings: &mut Vec<String>) -> [Option<DVec3>; 2] {
     let mut normals = [None, None];
     for (pair, normal) in normals.iter_mut().enumerate() {
         let (one, other) = (&rails[pair], &rails[pair + 2]);
         *normal = view_normal(one, other);
         if normal.is_none() {
-            notes.push(format!(
-                "Rails {pair} (\"{}\") and {} (\"{}\") do not lie in one plane: they stay where they were drawn.",
+            warnings.push(format!(
+                "Rails {pair} (\"{}\") and {} (\"{}\") do not lie in one plane: they stay where they were drawn. Draw both in \
+                 one view, or pass all four through `sort`.",
                 one.name(),
                 pair + 2,
                 other.name()
@@ -151,7 +148,9 @@ fn view_normals(rails: &[Curve; 4], notes: &mut Vec<String>) -> [Option<DVec3>; 
     if let [Some(a), Some(b)] = normals
         && a.dot(b).abs() > 0.9
     {
-        notes.push("Both pairs of rails were drawn in nearly the same view: they stay where they were drawn.".into());
+        warnings.push("Both pairs of rails were drawn in nearly the same view: they stay where they were drawn. Draw one pair in another \
+             view."
+                .into());
         return [None, None];
     }
     normals
@@ -187,7 +186,7 @@ mod tests {
     fn a_slanting_leg_stands_where_its_silhouettes_cross() {
         let made = run(&leg(), &GenerateOptions::default());
         assert_eq!((made.sections.len(), made.sections.nodes()), (24, 64));
-        assert_eq!((made.sections.rails(), made.notes.len(), made.largest_gap), (&[0, 16, 32, 48][..], 0, 0.0));
+        assert_eq!((made.sections.rails(), made.warnings.len(), made.largest_gap), (&[0, 16, 32, 48][..], 0, 0.0));
         for (k, section) in made.sections.iter().enumerate() {
             let t = k as f64 / 23.0;
             let centre = DVec3::new(0.25 - 0.2 * t, t, -0.06 + 0.1 * t);
@@ -260,7 +259,7 @@ mod tests {
             rails[k] = rails[k].map(|p| turn * p).unwrap();
         }
         let made = run(&rails, &GenerateOptions::default());
-        assert!(made.notes.is_empty());
+        assert!(made.warnings.is_empty());
         for section in made.sections.iter() {
             let pins: Vec<DVec3> = made.sections.rails().iter().map(|column| section[*column]).collect();
             let apart = (pins[0] + pins[2] - pins[1] - pins[3]) * 0.5;
@@ -314,17 +313,17 @@ mod tests {
 
     #[test]
     fn an_apex_may_be_at_the_start_or_loose() {
-        let reversed = dome().map(Curve::reversed);
-        let made = run(&reversed, &GenerateOptions::default());
+        let [left, back, right, front] = dome().map(Curve::reversed);
+        let made = run(&[left, front, right, back], &GenerateOptions::default());
         assert!(made.sections.is_pole(0) && !made.sections.is_pole(23));
 
         let mut loose = dome();
-        let gap = 0.012;
+        let gap = 0.01;
         loose[0] = loose[0].map(|p| p + DVec3::new(0.0, gap, 0.0)).unwrap();
         let made = run(&loose, &GenerateOptions::default());
         assert!(made.sections.is_pole(23));
         assert!((made.largest_gap - 0.75 * gap).abs() < 1e-12, "{}", made.largest_gap);
-        let open = run(&loose, &GenerateOptions { snap: 0.01, ..GenerateOptions::default() });
+        let open = run(&loose, &GenerateOptions { snap: 0.008, ..GenerateOptions::default() });
         assert!(!open.sections.is_pole(23));
         assert_eq!(open.largest_gap, 0.0);
     }
@@ -345,11 +344,15 @@ mod tests {
     }
 
     #[test]
-    fn pairs_that_cannot_be_shifted_are_noted() {
+    fn pairs_that_cannot_be_shifted_are_warned_of() {
         let mut rails = leg();
         rails[1] = rail("back", 20, |t| DVec3::new(0.1445 + 0.1 * (3.0 * t).sin(), t, -0.1));
         let made = run(&rails, &GenerateOptions::default());
-        assert!(made.notes.len() == 1 && made.notes[0].contains("Rails 1 (\"back\") and 3"), "{:?}", made.notes);
+        assert!(
+            made.warnings.len() == 1 && made.warnings[0].contains("Rails 1 (\"back\") and 3"),
+            "{:?}",
+            made.warnings
+        );
         let drawn = ArcLength::of(&rails[1]);
         for (k, section) in made.sections.iter().enumerate() {
             assert_eq!(section[16], drawn.point_at_fraction(k as f64 / 23.0));
@@ -359,7 +362,7 @@ mod tests {
         let [left, _, right, _] = leg();
         let same = [left.clone(), left.map(|p| p * 1.1).unwrap(), right.clone(), right.map(|p| p * 1.1).unwrap()];
         let made = run(&same, &GenerateOptions::default());
-        assert!(made.notes[0].contains("nearly the same view"), "{:?}", made.notes);
+        assert!(made.warnings[0].contains("nearly the same view"), "{:?}", made.warnings);
         assert_eq!(made.sections.section(0)[0], same[0].start());
     }
 
@@ -402,5 +405,30 @@ mod tests {
         huge[1] = huge[1].map(|p| p * 1e102).unwrap();
         let refused = two_views(&huge, &GenerateOptions::default(), &|_| true);
         assert_eq!(refused, Err(GenerateError::TooFarOut { name: "back".into() }));
+    }
+
+    #[test]
+    fn a_snap_larger_than_the_shape_closes_nothing() {
+        let options = GenerateOptions { snap: 10.0, ..GenerateOptions::default() };
+        let (made, open) = (run(&leg(), &options), run(&leg(), &GenerateOptions { snap: 0.0, ..options }));
+        assert_eq!(made.sections, open.sections);
+        assert!(!made.sections.is_pole(0) && !made.sections.is_pole(23) && made.largest_gap == 0.0);
+        assert!(made.warnings.len() == 2 && made.warnings[1].contains("the end stays open"), "{:?}", made.warnings);
+        assert!(open.warnings.is_empty());
+    }
+
+    #[test]
+    fn unsorted_rails_are_refused() {
+        let [left, back, right, front] = leg();
+        for placement in [ViewPlacement::Centred, ViewPlacement::AsDrawn] {
+            let options = GenerateOptions { placement, ..GenerateOptions::default() };
+            let unsorted = [left.clone(), right.clone(), front.clone(), back.clone()];
+            let refused = two_views(&unsorted, &options, &|_| true);
+            let names = ["left", "right", "front", "back"].map(str::to_owned);
+            assert_eq!(refused, Err(GenerateError::RailsUnsorted { names }));
+            let one_back = [left.clone(), back.clone().reversed(), right.clone(), front.clone()];
+            let refused = two_views(&one_back, &options, &|_| true);
+            assert_eq!(refused, Err(GenerateError::RailRunsBack { rail: 1, name: "back".into() }));
+        }
     }
 }

@@ -5,13 +5,17 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use crate::catalogue::Catalogue;
+use crate::evaluate::blame::names;
 use crate::evaluate::evaluation::{Evaluation, Outcome, OutcomeState};
+use crate::evaluate::file_cache::FileCache;
+use crate::evaluate::flight::Flights;
+use crate::evaluate::inputs::Key;
 use crate::evaluate::memo::{Entry, Memo};
-use crate::evaluate::plan::{Found, Plan, Planner, gather, key};
+use crate::evaluate::plan::{Found, Plan, Planner};
 use crate::evaluate::run::{Ended, Runner};
 use crate::evaluate::{CancelToken, Event, EventKind, Events};
-use crate::graph::{Graph, Node, NodeId, Source};
-use crate::value::{ContentHash, KeyHasherBuilder};
+use crate::graph::{Graph, Node, NodeId};
+use crate::value::KeyHasherBuilder;
 
 /// How to evaluate.
 #[derive(Clone, Debug)]
@@ -65,16 +69,20 @@ impl<'a> Request<'a> {
     }
 }
 
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 struct Slot {
-    /// Key of the node's last result, while nothing before it has changed since.
-    key: Option<ContentHash>,
+    /// Key of the node's last result, while nothing before it has changed since. All nodes before it have theirs too.
+    key: Option<Key>,
+    /// The evaluation that computed the key from the node's inputs.
+    computed_in: u64,
 }
 
 /// Evaluates graphs and remembers results by content: what was computed once for equal inputs is not computed again,
 /// whether in this graph, after an undo, or in another graph.
 pub struct Evaluator {
     memo: Memo,
+    files: FileCache,
+    evaluations: u64,
     threads: usize,
     pool: Option<rayon::ThreadPool>,
     slots: Vec<Slot>,
@@ -94,6 +102,8 @@ impl Evaluator {
     pub fn new(options: &EvaluatorOptions) -> Self {
         Self {
             memo: Memo::new(options.byte_budget),
+            files: FileCache::default(),
+            evaluations: 0,
             threads: options.threads,
             pool: None,
             slots: Vec::new(),
@@ -108,8 +118,15 @@ impl Evaluator {
         self.memo.byte_size()
     }
 
-    /// Forgets all results.
+    /// How often a file was read for the nodes. Within an evaluation each file is read once at most; from one to the
+    /// next only what changed, and what has to be computed again because the memo let it go.
+    pub fn file_reads(&self) -> usize {
+        self.files.reads()
+    }
+
+    /// Forgets all results and what is known of files.
     pub fn forget(&mut self) {
+        self.files.clear();
         self.memo.clear();
         self.slots.clear();
     }
@@ -117,10 +134,12 @@ impl Evaluator {
     /// Evaluates what is asked for. Never fails as a whole: each node has its own outcome.
     pub fn evaluate(&mut self, catalogue: &Catalogue, graph: &Graph, request: &Request<'_>) -> Evaluation {
         let begun = Instant::now();
+        self.evaluations += 1;
+        self.files.begin();
         self.sync(graph, request);
-        let planner = Planner { catalogue, graph, memo: &self.memo, base: &request.base, cancel: &request.cancel };
-        let plan = planner.plan(&request.targets, |id| self.slots.get(id.index()).and_then(|slot| slot.key));
-        self.announce(graph, request, &plan);
+        let planner = Planner { catalogue, graph, memo: &self.memo, base: &request.base, files: &self.files };
+        let plan = planner.plan(&request.targets, |id| self.slots.get(id.index()).and_then(|slot| slot.key.clone()));
+        announce(graph, request, &plan);
         self.start_pool(&plan);
         let runner = Runner {
             graph,
@@ -129,9 +148,12 @@ impl Evaluator {
             base: &request.base,
             cancel: &request.cancel,
             events: request.events,
+            files: &self.files,
+            flights: Flights::default(),
             silence: Default::default(),
         };
         let ended = runner.run(self.pool.as_ref());
+        self.files.drop_bytes();
         self.conclude(graph, request, plan, ended, begun)
     }
 
@@ -145,76 +167,40 @@ impl Evaluator {
         }
         self.slots.resize(graph.id_bound(), Slot::default());
         let mut stale: Vec<NodeId> = Vec::new();
-        let mut fingerprinted = false;
+        let mut read_files = false;
         for (id, node) in graph.nodes() {
-            if self.slots[id.index()].key.is_some() {
+            if let Some(key) = &self.slots[id.index()].key {
                 if node.changed_at > self.revision {
                     stale.push(id);
                 } else {
-                    fingerprinted |= node.kind.as_ref().is_some_and(|kind| kind.has_fingerprint());
+                    read_files |= key.files.is_some();
                 }
             }
         }
-        if fingerprinted {
-            // Fingerprints read files, so only those of nodes that are needed are taken.
+        if read_files {
+            // Only the files of nodes that are needed are looked at.
             let needed = graph.upstream(&request.targets).into_iter();
-            let needed = needed.filter(|id| self.slots[id.index()].key.is_some());
-            stale.extend(
-                needed.filter(|id| graph.node(*id).is_some_and(|node| self.fingerprint_changed(*id, node, request))),
-            );
+            stale.extend(needed.filter(|id| self.files_changed(*id)));
         }
-        while let Some(id) = stale.pop() {
-            // A stale node's dependents are stale already: keys are given and taken from the sources downwards.
-            if self.slots[id.index()].key.take().is_some() {
-                stale.extend(graph.dependents(id));
-            }
-        }
+        self.forget_keys(graph, stale, |_| true);
         self.revision = graph.revision();
     }
 
-    /// Whether what the node depends on beside its inputs (a file) is no longer what it was.
-    fn fingerprint_changed(&self, id: NodeId, node: &Node, request: &Request<'_>) -> bool {
-        let Some(kind) = node.kind.as_ref().filter(|k| k.has_fingerprint()) else { return false };
-        if node.inputs.values().any(|source| !matches!(source, Source::Literal { .. })) {
-            // Its inputs are not known yet; the plan will compute the key anew.
-            return true;
+    /// Takes the keys of these nodes and of all behind them, as far as they may be taken.
+    fn forget_keys(&mut self, graph: &Graph, mut stale: Vec<NodeId>, may: impl Fn(&Slot) -> bool) {
+        while let Some(id) = stale.pop() {
+            let slot = &mut self.slots[id.index()];
+            // Behind a node without a key there is none: keys are given and taken from the sources downwards.
+            if may(slot) && slot.key.take().is_some() {
+                stale.extend(graph.dependents(id));
+            }
         }
-        let supplies: Vec<_> = kind
-            .inputs()
-            .iter()
-            .map(|spec| {
-                let literal = node.inputs.get(&spec.name).and_then(|source| match source {
-                    Source::Literal { value, .. } => Some(value.clone()),
-                    _ => None,
-                });
-                literal
-                    .or_else(|| spec.default_value.clone())
-                    .map_or(crate::evaluate::plan::Supply::Nothing, crate::evaluate::plan::Supply::Value)
-            })
-            .collect();
-        let now =
-            gather(kind, &supplies, |_, _| None).and_then(|inputs| key(kind, &inputs, &request.base, &request.cancel));
-        now.ok().flatten() != self.slots[id.index()].key
     }
 
-    fn announce(&self, graph: &Graph, request: &Request<'_>, plan: &Plan) {
-        let name = |id: NodeId| graph.node(id).map_or("", Node::name);
-        if let Some(first) = request.targets.first() {
-            let kind = EventKind::Planned(plan.steps.len());
-            request.events.event(&Event { node: *first, name: name(*first), kind });
-        }
-        for id in &plan.order {
-            let kind = match plan.found.get(id) {
-                Some(Found::Known(_, entry)) => match &entry.result {
-                    Ok(_) => EventKind::Hit,
-                    Err(failure) => EventKind::Failed(failure),
-                },
-                Some(Found::Failed(failure)) => EventKind::Failed(failure),
-                Some(Found::Waiting(on)) => EventKind::Waiting(on),
-                Some(Found::Scheduled(_)) | None => continue,
-            };
-            request.events.event(&Event { node: *id, name: name(*id), kind });
-        }
+    /// Whether the node read files that are no longer what they were.
+    fn files_changed(&self, id: NodeId) -> bool {
+        let files = self.slots[id.index()].key.as_ref().and_then(|key| key.files.as_deref()).unwrap_or_default();
+        files.iter().any(|file| self.files.hash(&file.path) != Ok(file.hash))
     }
 
     fn start_pool(&mut self, plan: &Plan) {
@@ -236,42 +222,72 @@ impl Evaluator {
         let targets: HashSet<NodeId, KeyHasherBuilder> = request.targets.iter().copied().collect();
         let mut outcomes = Vec::with_capacity(plan.order.len());
         let mut kinds = Vec::new();
+        let mut changed = Vec::new();
         for id in plan.order {
             let (Some(node), Some(found)) = (graph.node(id), plan.found.remove(&id)) else { continue };
             let wanted = targets.contains(&id);
-            let (state, ran, duration) = match found {
-                Found::Known(key, entry) => {
-                    self.slots[id.index()].key = Some(key);
-                    (state_of(&entry, wanted), false, entry.duration)
+            let (key, state, ran, duration) = match found {
+                Found::Known(key, entry) => (Some(key), state_of(&entry, wanted), false, entry.duration),
+                Found::Failed(failure) => (None, OutcomeState::Failed(failure), false, Duration::ZERO),
+                Found::Waiting(on) => (None, OutcomeState::Waiting(names(graph, &on)), false, Duration::ZERO),
+                Found::Scheduled(step) => {
+                    self.slots[id.index()].computed_in = self.evaluations;
+                    match std::mem::replace(&mut ended[step], Ended::Cancelled) {
+                        Ended::Done { key, values, report, duration, ran } => {
+                            (Some(key), OutcomeState::Done { values, report }, ran, duration)
+                        }
+                        Ended::Failed { key, failure, duration, ran } => {
+                            (key, OutcomeState::Failed(failure), ran, duration)
+                        }
+                        Ended::Waiting(on) => (None, OutcomeState::Waiting(names(graph, &on)), false, Duration::ZERO),
+                        Ended::Cancelled => {
+                            evaluation.cancelled = true;
+                            (None, OutcomeState::Cancelled, false, Duration::ZERO)
+                        }
+                    }
                 }
-                Found::Failed(failure) => (OutcomeState::Failed(failure), false, Duration::ZERO),
-                Found::Waiting(on) => (OutcomeState::Waiting(on), false, Duration::ZERO),
-                Found::Scheduled(step) => match std::mem::replace(&mut ended[step], Ended::Cancelled) {
-                    Ended::Done { key, values, report, duration, ran } => {
-                        self.slots[id.index()].key = Some(key);
-                        (OutcomeState::Done { values, report }, ran, duration)
-                    }
-                    Ended::Failed { key, failure, duration, ran } => {
-                        self.slots[id.index()].key = key;
-                        (OutcomeState::Failed(failure), ran, duration)
-                    }
-                    Ended::Waiting(on) => (OutcomeState::Waiting(on), false, Duration::ZERO),
-                    Ended::Cancelled => {
-                        evaluation.cancelled = true;
-                        (OutcomeState::Cancelled, false, Duration::ZERO)
-                    }
-                },
             };
+            let before = std::mem::replace(&mut self.slots[id.index()].key, key);
+            if before.is_some_and(|old| self.slots[id.index()].key.as_ref().is_none_or(|new| new.hash != old.hash)) {
+                changed.push(id);
+            }
             if wanted && let Some(kind) = &node.kind {
                 kinds.push((id, kind.clone()));
             }
             outcomes
                 .push((id, Outcome { name: node.name.clone(), kind: node.kind_name.clone(), state, ran, duration }));
         }
+        // A key that changed although nothing was stale: a file vanished, say, and what read it was forgotten. What is
+        // behind it and was not computed from it just now has a key that stands for the past.
+        let behind: Vec<_> = changed.into_iter().flat_map(|id| graph.dependents(id)).collect();
+        let evaluation_number = self.evaluations;
+        self.forget_keys(graph, behind, |slot| slot.computed_in != evaluation_number);
         evaluation.outcomes = outcomes.into_iter().collect();
         evaluation.kinds = kinds.into_iter().collect();
         evaluation.duration = begun.elapsed();
         evaluation
+    }
+}
+
+/// Says what is settled without running, and how many nodes are scheduled.
+fn announce(graph: &Graph, request: &Request<'_>, plan: &Plan) {
+    let emit = |id: NodeId, kind: EventKind<'_>| {
+        let name = graph.node(id).map_or("", Node::name);
+        request.events.event(&Event { node: id, name, kind });
+    };
+    for id in &plan.order {
+        match plan.found.get(id) {
+            Some(Found::Known(_, entry)) => match &entry.result {
+                Ok(_) => emit(*id, EventKind::Hit),
+                Err(failure) => emit(*id, EventKind::Failed(failure)),
+            },
+            Some(Found::Failed(failure)) => emit(*id, EventKind::Failed(failure)),
+            Some(Found::Waiting(on)) => emit(*id, EventKind::Waiting(&names(graph, on))),
+            Some(Found::Scheduled(_)) | None => {}
+        }
+    }
+    if let Some(first) = request.targets.first() {
+        emit(*first, EventKind::Planned(plan.steps.len()));
     }
 }
 

@@ -19,15 +19,23 @@ pub struct Event<'a> {
 }
 
 /// What happened.
+///
+/// First come the nodes that are settled without running: [`Hit`](Self::Hit), [`Failed`](Self::Failed) or
+/// [`Waiting`](Self::Waiting), one for each. Then comes [`Planned`](Self::Planned), once, and after it the scheduled
+/// nodes. Each of these ends with exactly one of `Hit`, `Finished`, `Failed`, `Waiting` and `Cancelled`: a progress bar
+/// that takes its length from `Planned` and counts these five, from there on, fills exactly. `Started` and `Progress`
+/// don't count; a node that starts is ended by `Finished`, `Failed` or `Cancelled`.
 #[derive(Clone, Debug)]
 pub enum EventKind<'a> {
-    /// So many nodes may have to run; fewer do where the memo answers. Comes once, first, with the first target.
+    /// So many nodes are scheduled; some of them need not run, where an equal result turns up meanwhile. Comes once,
+    /// with the first target, after the events of all nodes that are settled without running; not at all where no
+    /// target is given.
     Planned(usize),
     /// It began to run.
     Started,
     /// So much of it is done, 0 to 1.
     Progress(f64),
-    /// The memo answered in its place.
+    /// The memo, or an equal node of this evaluation, answered in its place.
     Hit,
     /// It ran.
     Finished(Duration),

@@ -5,11 +5,20 @@
 //!    the memo at once, so that undo and redo never reach step 3 ([`plan`]).
 //! 3. *Run*: scheduled nodes run as soon as their inputs are there; each first asks the memo, because an upstream
 //!    node may have recomputed an equal result ([`run`]).
+//!
+//! Nothing is computed twice in one evaluation. Nodes of equal kinds and equal supplies are found equal while planning,
+//! and all but the first take the result of the first, whatever the number of threads. Nodes whose inputs merely turn
+//! out equal find the result in the memo, or, while it is being computed, wait for it ([`flight`]); which of them runs
+//! then depends on who comes first, but not how many run, as long as the byte budget holds what an evaluation makes.
 
+mod blame;
 mod cancel;
 mod evaluation;
 mod evaluator;
 mod event;
+mod file_cache;
+mod flight;
+mod inputs;
 mod memo;
 mod plan;
 mod run;

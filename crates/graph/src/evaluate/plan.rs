@@ -1,29 +1,19 @@
 //! From the targets upwards: which nodes are answered at once, and which must run.
 
 use std::collections::HashMap;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::collections::hash_map::Entry as Slot;
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::catalogue::{Catalogue, ConvertFn};
+use crate::catalogue::Catalogue;
+use crate::evaluate::Failure;
+use crate::evaluate::blame::Blame;
+use crate::evaluate::file_cache::FileCache;
+use crate::evaluate::inputs::{Key, Supply, gather, key, key_of_kind};
 use crate::evaluate::memo::{Entry, Memo};
-use crate::evaluate::{CancelToken, Failure};
 use crate::graph::{Graph, Node, NodeId, Source};
 use crate::node_kind::NodeKind;
-use crate::ports::{NodeError, Ports};
-use crate::value::{ContentHash, KeyHasherBuilder, Value};
-
-/// Where an input's value comes from.
-pub(crate) enum Supply {
-    /// Nothing; the input is optional.
-    Nothing,
-    /// A literal or default.
-    Value(Value),
-    /// An output of a scheduled node.
-    Scheduled { step: usize, output: usize, conversion: Option<Arc<ConvertFn>> },
-    /// An output that is known already.
-    Known { entry: Arc<Entry>, output: usize, conversion: Option<Arc<ConvertFn>> },
-}
+use crate::value::{ContentHash, ContentHasher, KeyHasherBuilder};
 
 /// A node that may have to run.
 pub(crate) struct Step {
@@ -34,6 +24,8 @@ pub(crate) struct Step {
     pub(crate) dependents: Vec<usize>,
     /// Steps that it takes values from, each once.
     pub(crate) sources: Vec<usize>,
+    /// The first step of an equal kind with equal supplies, whose result is this one's too; one of `sources`.
+    pub(crate) twin_of: Option<usize>,
     /// Whether its values are wanted after the evaluation.
     pub(crate) is_target: bool,
 }
@@ -42,13 +34,13 @@ pub(crate) struct Step {
 #[derive(Clone)]
 pub(crate) enum Found {
     /// The memo knows it.
-    Known(ContentHash, Arc<Entry>),
-    /// It may have to run.
+    Known(Key, Arc<Entry>),
+    /// It may have to run, or waits for nodes that do.
     Scheduled(usize),
     /// It can't run.
     Failed(Failure),
-    /// Nodes before it can't run.
-    Waiting(Vec<String>),
+    /// These nodes failed before it, and no others will.
+    Waiting(Vec<NodeId>),
 }
 
 /// The steps in an order in which each comes behind those it depends on, and what was found without running.
@@ -58,6 +50,8 @@ pub(crate) struct Plan {
     pub(crate) found: HashMap<NodeId, Found, KeyHasherBuilder>,
     /// The nodes of `found`, in the order in which they were looked at.
     pub(crate) order: Vec<NodeId>,
+    /// The first step of each kind with certain supplies.
+    numbering: HashMap<ContentHash, usize, KeyHasherBuilder>,
 }
 
 pub(crate) struct Planner<'a> {
@@ -65,12 +59,12 @@ pub(crate) struct Planner<'a> {
     pub(crate) graph: &'a Graph,
     pub(crate) memo: &'a Memo,
     pub(crate) base: &'a Path,
-    pub(crate) cancel: &'a CancelToken,
+    pub(crate) files: &'a FileCache,
 }
 
 impl Planner<'_> {
     /// `key_of` gives the memo key of a node that did not change since its last evaluation.
-    pub(crate) fn plan(&self, targets: &[NodeId], key_of: impl Fn(NodeId) -> Option<ContentHash>) -> Plan {
+    pub(crate) fn plan(&self, targets: &[NodeId], key_of: impl Fn(NodeId) -> Option<Key>) -> Plan {
         let mut plan = Plan::default();
         // An explicit stack: a chain of 100 000 nodes must not overflow the thread's.
         let mut stack: Vec<(NodeId, bool)> = targets.iter().rev().map(|t| (*t, false)).collect();
@@ -80,7 +74,8 @@ impl Planner<'_> {
             }
             let Some(node) = self.graph.node(id) else { continue };
             if !inputs_done {
-                if let Some((key, entry)) = key_of(id).and_then(|key| Some((key, self.memo.get(key)?))) {
+                if let Some((key, entry)) = key_of(id).and_then(|key| self.memo.get(key.hash).map(|entry| (key, entry)))
+                {
                     plan.note(id, Found::Known(key, entry));
                     continue;
                 }
@@ -112,32 +107,51 @@ impl Planner<'_> {
             let hint = hint.map(|s| format!(" Did you mean \"{s}\"?")).unwrap_or_default();
             return Found::Failed(Failure {
                 port: None,
-                message: format!("the kind \"{}\" is unknown to this version.{hint}", node.kind_name),
+                message: format!("the kind {:?} is unknown to this version.{hint}", node.kind_name),
             });
         };
         let supplies = match self.supplies(plan, node, kind) {
             Ok(supplies) => supplies,
-            Err(found) => return found,
+            Err(failure) => return Found::Failed(failure),
         };
-        let mut sources: Vec<usize> = supplies
-            .iter()
-            .filter_map(|s| if let Supply::Scheduled { step, .. } = s { Some(*step) } else { None })
-            .collect();
+        let mut sources: Vec<usize> = supplies.iter().filter_map(Supply::step).collect();
         sources.sort_unstable();
         sources.dedup();
-        if sources.is_empty() {
-            let inputs = gather(kind, &supplies, |_, _| None);
-            let key = inputs.and_then(|inputs| key(kind, &inputs, self.base, self.cancel));
-            match key {
-                Err(failure) => return Found::Failed(failure),
-                Ok(Some(key)) => {
-                    if let Some(entry) = self.memo.get(key) {
-                        return Found::Known(key, entry);
-                    }
-                }
-                Ok(None) => {}
+        let mut blame = Blame::default();
+        for supply in &supplies {
+            if let Supply::Missing(nodes) = supply {
+                blame.add(nodes);
             }
         }
+        let twin_of = match blame.into_nodes() {
+            // Until every source has ended, it is not known which others are to blame.
+            Some(_) if !sources.is_empty() => None,
+            Some(blamed) => return Found::Waiting(blamed),
+            None => {
+                let number = if sources.is_empty() {
+                    let inputs = gather(kind, &supplies, |_, _| None);
+                    match inputs.and_then(|inputs| key(kind, &inputs, self.base, self.files)) {
+                        Err(failure) => return Found::Failed(failure),
+                        Ok(key) => {
+                            if let Some(entry) = self.memo.get(key.hash) {
+                                return Found::Known(key, entry);
+                            }
+                            key.hash
+                        }
+                    }
+                } else {
+                    plan.number(kind, &supplies)
+                };
+                match plan.numbering.entry(number) {
+                    Slot::Occupied(first) => Some(*first.get()),
+                    Slot::Vacant(free) => {
+                        free.insert(plan.steps.len());
+                        None
+                    }
+                }
+            }
+        };
+        sources.extend(twin_of);
         let step = plan.steps.len();
         for source in &sources {
             plan.steps[*source].dependents.push(step);
@@ -148,16 +162,17 @@ impl Planner<'_> {
             supplies,
             dependents: Vec::new(),
             sources,
+            twin_of,
             is_target: false,
         });
         Found::Scheduled(step)
     }
 
-    fn supplies(&self, plan: &Plan, node: &Node, kind: &NodeKind) -> Result<Vec<Supply>, Found> {
+    /// Where the values of the inputs come from. What is said here must not depend on what the memo remembers.
+    fn supplies(&self, plan: &Plan, node: &Node, kind: &NodeKind) -> Result<Vec<Supply>, Failure> {
         let mut supplies = Vec::with_capacity(kind.inputs().len());
-        let mut waiting = Vec::new();
         for spec in kind.inputs() {
-            let fail = |message: String| Found::Failed(Failure { port: Some(spec.name.clone()), message });
+            let fail = |message: String| Failure { port: Some(spec.name.clone()), message };
             let supply = match node.inputs.get(&spec.name) {
                 Some(Source::Literal { value, .. }) => Supply::Value(value.clone()),
                 Some(Source::Unread(_)) => {
@@ -168,15 +183,14 @@ impl Planner<'_> {
                         return Err(fail("it is linked to a node that is gone".to_owned()));
                     };
                     let Some(found) = plan.found.get(&link.node) else {
-                        return Err(fail(format!("\"{}\" could not be reached", source.name)));
+                        return Err(fail(format!("{:?} could not be reached", source.name)));
                     };
-                    if let Found::Failed(_) | Found::Waiting(_) = found {
-                        blame(&mut waiting, found, &source.name);
+                    let Some(source_kind) = &source.kind else {
+                        supplies.push(Supply::Missing(vec![link.node]));
                         continue;
-                    }
-                    let output = source.kind.as_ref().and_then(|k| k.find_output(&link.output));
-                    let Some((output, output_spec)) = output else {
-                        return Err(fail(format!("\"{}\" has no output \"{}\"", source.name, link.output)));
+                    };
+                    let Some((output, output_spec)) = source_kind.find_output(&link.output) else {
+                        return Err(fail(format!("{:?} has no output {:?}", source.name, link.output)));
                     };
                     let conversion =
                         if output_spec.wire == spec.wire {
@@ -188,13 +202,12 @@ impl Planner<'_> {
                             })?)
                         };
                     match found {
-                        Found::Known(_, entry) if entry.result.is_err() => {
-                            blame(&mut waiting, found, &source.name);
-                            continue;
+                        Found::Known(_, entry) if entry.result.is_ok() => {
+                            Supply::Known { entry: entry.clone(), output, conversion }
                         }
-                        Found::Known(_, entry) => Supply::Known { entry: entry.clone(), output, conversion },
                         Found::Scheduled(step) => Supply::Scheduled { step: *step, output, conversion },
-                        Found::Failed(_) | Found::Waiting(_) => continue,
+                        Found::Known(..) | Found::Failed(_) => Supply::Missing(vec![link.node]),
+                        Found::Waiting(on) => Supply::Missing(on.clone()),
                     }
                 }
                 None => match &spec.default_value {
@@ -207,7 +220,7 @@ impl Planner<'_> {
             };
             supplies.push(supply);
         }
-        if waiting.is_empty() { Ok(supplies) } else { Err(Found::Waiting(waiting)) }
+        Ok(supplies)
     }
 }
 
@@ -216,101 +229,33 @@ impl Plan {
         self.found.insert(id, found);
         self.order.push(id);
     }
-}
 
-/// Adds the nodes that are to blame for a missing input, each once.
-fn blame(waiting: &mut Vec<String>, found: &Found, name: &str) {
-    match found {
-        Found::Waiting(on) => on.iter().for_each(|name| blame_name(waiting, name)),
-        _ => blame_name(waiting, name),
-    }
-}
-
-pub(crate) fn blame_name(waiting: &mut Vec<String>, name: &str) {
-    if !waiting.iter().any(|n| n == name) {
-        waiting.push(name.to_owned());
-    }
-}
-
-/// The values of all inputs, converted and checked. `scheduled` gives the values of steps.
-pub(crate) fn gather(
-    kind: &NodeKind,
-    supplies: &[Supply],
-    scheduled: impl Fn(usize, usize) -> Option<Value>,
-) -> Result<Vec<Option<Value>>, Failure> {
-    let mut inputs = Vec::with_capacity(supplies.len());
-    for (spec, supply) in kind.inputs().iter().zip(supplies) {
-        let fail = |message: String| Failure { port: Some(spec.name.clone()), message };
-        let (value, conversion) = match supply {
-            Supply::Nothing => {
-                inputs.push(None);
-                continue;
+    /// Equal for steps whose results must be equal: the same kind, and supplies from equal steps or of equal values.
+    fn number(&self, kind: &NodeKind, supplies: &[Supply]) -> ContentHash {
+        let mut bytes = key_of_kind(kind, supplies.len());
+        // No key of a node begins so: its first byte here says whether there is an input.
+        bytes.push(u8::MAX);
+        for supply in supplies {
+            match supply {
+                Supply::Nothing | Supply::Missing(_) => bytes.push(0),
+                Supply::Value(value) => {
+                    bytes.push(1);
+                    bytes.extend_from_slice(&value.hash().0.to_le_bytes());
+                }
+                Supply::Known { entry, output, .. } => {
+                    bytes.push(1);
+                    if let Some(value) = entry.result.as_ref().ok().and_then(|values| values.get(*output)) {
+                        bytes.extend_from_slice(&value.hash().0.to_le_bytes());
+                    }
+                }
+                Supply::Scheduled { step, output, .. } => {
+                    bytes.push(2);
+                    let first = self.steps[*step].twin_of.unwrap_or(*step);
+                    bytes.extend_from_slice(&(first as u64).to_le_bytes());
+                    bytes.extend_from_slice(&(*output as u64).to_le_bytes());
+                }
             }
-            Supply::Value(value) => {
-                inputs.push(Some(value.clone()));
-                continue;
-            }
-            Supply::Scheduled { step, output, conversion } => (scheduled(*step, *output), conversion),
-            Supply::Known { entry, output, conversion } => {
-                (entry.result.as_ref().ok().and_then(|values| values.get(*output).cloned()), conversion)
-            }
-        };
-        let Some(mut value) = value else {
-            return Err(fail("its value was not there in time; this is a mistake in the engine".to_owned()));
-        };
-        if let Some(conversion) = conversion {
-            value = conversion(&value).map_err(fail)?;
         }
-        if let Some(reason) = spec.refuses_value(&value) {
-            return Err(fail(reason));
-        }
-        inputs.push(Some(value));
+        ContentHasher::of_bytes(&bytes)
     }
-    Ok(inputs)
-}
-
-/// What the result depends on: kind, version, every input's content, and the kind's fingerprint. `None` where the
-/// evaluation was cancelled meanwhile.
-pub(crate) fn key(
-    kind: &NodeKind,
-    inputs: &[Option<Value>],
-    base: &Path,
-    cancel: &CancelToken,
-) -> Result<Option<ContentHash>, Failure> {
-    let mut bytes = Vec::with_capacity(kind.name().len() + 32 + 17 * inputs.len());
-    bytes.extend_from_slice(kind.name().as_bytes());
-    bytes.push(0);
-    bytes.extend_from_slice(&kind.version().to_le_bytes());
-    for input in inputs {
-        match input {
-            Some(value) => {
-                bytes.push(1);
-                bytes.extend_from_slice(&value.hash().0.to_le_bytes());
-            }
-            None => bytes.push(0),
-        }
-    }
-    if let Some(fingerprint) = kind.fingerprint_fn() {
-        let go_on = |_| !cancel.is_cancelled();
-        let ports = Ports::new(kind, inputs, base, &go_on);
-        match catch_unwind(AssertUnwindSafe(|| fingerprint(&ports))) {
-            // It may have stopped halfway.
-            _ if cancel.is_cancelled() => return Ok(None),
-            Ok(Ok(hash)) => bytes.extend_from_slice(&hash.0.to_le_bytes()),
-            Ok(Err(NodeError::Cancelled)) => return Ok(None),
-            Ok(Err(NodeError::Failed { input, message })) => return Err(failure(kind, input, message)),
-            Err(panic) => return Err(failure(kind, None, panic_message(kind, panic.as_ref()))),
-        }
-    }
-    Ok(Some(crate::ContentHasher::of_bytes(&bytes)))
-}
-
-pub(crate) fn failure(kind: &NodeKind, input: Option<usize>, message: String) -> Failure {
-    Failure { port: input.and_then(|i| kind.inputs().get(i)).map(|spec| spec.name.clone()), message }
-}
-
-pub(crate) fn panic_message(kind: &NodeKind, panic: &(dyn std::any::Any + Send)) -> String {
-    let text = panic.downcast_ref::<&str>().map(|s| (*s).to_owned());
-    let text = text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();
-    format!("the node kind \"{}\" broke down ({text}); this is a mistake in the kind, please report it", kind.name())
 }

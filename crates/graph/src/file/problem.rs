@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::one_line::one_line;
+
 /// Whether a problem keeps the graph from being evaluated as it was meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
@@ -20,7 +22,7 @@ impl fmt::Display for Severity {
     }
 }
 
-/// One thing that is wrong.
+/// One thing that is wrong. Written out it is one line, whatever the file's names hold.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
     /// How bad it is.
@@ -43,12 +45,12 @@ impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}: {}: ", self.line, self.column, self.severity)?;
         match (&self.node, &self.port) {
-            (Some(node), Some(port)) => write!(f, "node \"{node}\", input \"{port}\": ")?,
-            (Some(node), None) => write!(f, "node \"{node}\": ")?,
+            (Some(node), Some(port)) => write!(f, "node {node:?}, input {port:?}: ")?,
+            (Some(node), None) => write!(f, "node {node:?}: ")?,
             _ => {}
         }
-        write!(f, "{}", self.message)?;
-        if self.remedy.is_empty() { Ok(()) } else { write!(f, "; {}", self.remedy) }
+        write!(f, "{}", one_line(&self.message))?;
+        if self.remedy.is_empty() { Ok(()) } else { write!(f, "; {}", one_line(&self.remedy)) }
     }
 }
 
@@ -64,7 +66,7 @@ pub enum FileError {
         column: usize,
     },
     /// Not a graph in RON.
-    #[error("{line}:{column}: error: {message}; {remedy}")]
+    #[error("{line}:{column}: error: {}; {remedy}", one_line(.message))]
     Syntax {
         /// Line, counted from 1.
         line: usize,

@@ -21,8 +21,82 @@ pub(super) fn in_words(error: &Error) -> String {
         Error::TrailingCharacters => "more text follows where the end is expected".to_owned(),
         Error::ExpectedIdentifier => "the name of a field is expected here, without quotes".to_owned(),
         Error::NoSuchEnumVariant { found, .. } => format!("\"{found}\" is not known"),
-        // The names of Rust types say nothing to those who write graphs.
-        other => other.to_string().replace("tuple variant Tagged::", "").replace("newtype variant Tagged::", ""),
+        Error::NoSuchStructField { expected, found, outer } => {
+            let whose = noun(outer.as_deref());
+            format!("{whose} has no field \"{found}\"; it has {}", expected.join(", "))
+        }
+        Error::MissingStructField { field, outer } => {
+            format!("{} lacks the field \"{field}\"", noun(outer.as_deref()))
+        }
+        Error::DuplicateStructField { field, outer } => {
+            format!("{} has the field \"{field}\" twice", noun(outer.as_deref()))
+        }
+        Error::ExpectedDifferentLength { expected, found } => wrong_length(expected, *found),
+        Error::InvalidValueForType { expected, found } => format!("{} is expected here, not {found}", thing(expected)),
+        Error::ExpectedArray => "a '[' is expected here".to_owned(),
+        Error::ExpectedArrayEnd => "a ',' or a ']' is expected here".to_owned(),
+        Error::ExpectedStructLikeEnd | Error::ExpectedOptionEnd => {
+            "a ')' is expected here: nothing more belongs into these brackets".to_owned()
+        }
+        Error::ExpectedMapEnd => "a ',' or a '}' is expected here".to_owned(),
+        Error::ExpectedBoolean => "true or false is expected here".to_owned(),
+        Error::ExpectedInteger => "a whole number is expected here".to_owned(),
+        Error::ExpectedFloat => "a number is expected here".to_owned(),
+        Error::ExpectedString => "a text in double quotes is expected here".to_owned(),
+        Error::FloatUnderscore | Error::UnderscoreAtBeginning => "a number has a '_' in the wrong place".to_owned(),
+        Error::IntegerOutOfBounds => "a whole number is too large".to_owned(),
+        Error::InvalidIntegerDigit { digit, base } => {
+            format!("{digit:?} is no digit of a whole number of base {base}")
+        }
+        Error::InvalidEscape(_) => {
+            "a text has a '\\' that means nothing: write \\\\ for a backslash, or a raw text r\"...\"".to_owned()
+        }
+        Error::UnexpectedChar(found) => format!("{found:?} can't stand here"),
+        Error::InvalidIdentifier(found) | Error::SuggestRawIdentifier(found) => {
+            format!("{found:?} is not the name of a field")
+        }
+        Error::ExpectedDifferentStructName { found, .. } => format!("the name {found:?} can't stand before this '('"),
+        Error::NoSuchExtension(name) => format!("the attribute for {name:?} means nothing in a graph"),
+        Error::Message(message) => message.clone(),
+        other => format!("this can't be understood ({other})"),
+    }
+}
+
+/// What a type of this library is called in a file.
+fn noun(outer: Option<&str>) -> &'static str {
+    match outer {
+        Some("Stroke") => "a stroke",
+        _ => "this",
+    }
+}
+
+/// What a value should have been, in plain words.
+fn thing(expected: &str) -> String {
+    match expected {
+        "f64" | "f32" => "a number".to_owned(),
+        "a boolean" => "true or false".to_owned(),
+        "a string" => "a text in double quotes".to_owned(),
+        "a sequence" => "a list [...]".to_owned(),
+        other => plain(other),
+    }
+}
+
+/// Names of Rust types say nothing to those who write graphs.
+fn plain(expected: &str) -> String {
+    expected.replace("tuple variant Tagged::", "").replace("newtype variant Tagged::", "").replace("struct ", "")
+}
+
+/// What has too few or too many parts. RON says what it expected as "tuple variant Tagged::Vector with 3 elements".
+fn wrong_length(expected: &str, found: usize) -> String {
+    let given = match found {
+        0 => "none is given".to_owned(),
+        1 => "1 is given".to_owned(),
+        many => format!("{many} are given"),
+    };
+    let plain = plain(expected);
+    match plain.strip_suffix(" elements").and_then(|rest| rest.rsplit_once(" with ")) {
+        Some((name, count)) => format!("{name} takes {count} numbers, and {given}"),
+        None => format!("{plain} is expected here, and of its numbers {given}"),
     }
 }
 

@@ -242,12 +242,9 @@ fn read_file() -> NodeKind {
     kind("read-file", |node| {
         let file = node.file("file", &["txt"], "What to read.");
         let text = node.output::<String>("text", "Its content.");
-        let read = |path: &std::path::Path| {
-            std::fs::read(path).map_err(|error| format!("\"{}\" can't be read: {:?}", path.display(), error.kind()))
-        };
-        node.fingerprint(move |ports| Ok(ContentHasher::of_bytes(&read(&ports.path(file)?).at(file)?)));
+        node.reads_file(file);
         node.evaluate(move |ports| {
-            let bytes = read(&ports.path(file)?).at(file)?;
+            let bytes = ports.file(file)?;
             ports.write(text, String::from_utf8_lossy(&bytes).into_owned());
             Ok(())
         });

@@ -1,6 +1,6 @@
 //! **Smooth**: takes short bends off curves; a shaky hand, a lip line too sharp to model.
 
-use maquette_geometry::curve::smooth;
+use maquette_geometry::curve::{SmoothError, smooth};
 use maquette_graph::{AtPort, NodeKind};
 
 use crate::wire;
@@ -22,9 +22,18 @@ pub(crate) fn kind() -> NodeKind {
     node.soft_range(wave, 0.002..=0.2);
     let smoothed = node.output::<wire::Curves>("curves", "The smoothed curves, with as many points as before.");
     node.evaluate(move |ports| {
-        let wave = ports.value(wave);
-        let calm = ports.read(curves).0.iter().map(|curve| smooth(curve, wave)).collect::<Result<_, _>>();
-        ports.write(smoothed, wire::Curves(calm.at(curves)?));
+        let length = ports.value(wave);
+        let drawn = &ports.read(curves).0;
+        let mut calm = Vec::with_capacity(drawn.len());
+        for (done, curve) in drawn.iter().enumerate() {
+            ports.progress(done as f64 / drawn.len() as f64)?;
+            calm.push(match smooth(curve, length) {
+                Err(error @ SmoothError::Wave { .. }) => Err(error).at(wave)?,
+                smoothed => smoothed.at(curves)?,
+            });
+        }
+        ports.progress(1.0)?;
+        ports.write(smoothed, wire::Curves(calm));
         Ok(())
     });
     node

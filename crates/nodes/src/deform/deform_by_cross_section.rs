@@ -1,7 +1,9 @@
 //! **Deform by cross-section**: a sketched cross-section pulls the sections around it.
 //! Reference: end of thesis 5.5, Figure 5.7.
 
-use maquette_geometry::deform::{Continuity, CrossSectionOptions, Matching, deform_by_cross_section};
+use maquette_geometry::deform::{
+    Continuity, CrossSectionError, CrossSectionOptions, Matching, deform_by_cross_section,
+};
 use maquette_graph::{AtPort, Choices, NodeKind};
 
 use crate::stiffness::StiffnessInputs;
@@ -58,7 +60,22 @@ pub(crate) fn kind() -> NodeKind {
             continuity: ports.choice(continuity).0,
             matching: ports.choice(matching).0,
         };
-        let result = deform_by_cross_section(&ports.read(sections).0, &ports.read(contour).0, &options).at(contour)?;
+        use CrossSectionError as E;
+        let result = match deform_by_cross_section(&ports.read(sections).0, &ports.read(contour).0, &options) {
+            Err(error @ (E::Reach { which, .. } | E::RangeTooSmall { which, .. })) => {
+                Err(error).at(if which == "before" { before } else { after })
+            }
+            Err(
+                error @ (E::SectionsAreOpen
+                | E::TooFewSections { .. }
+                | E::SectionIsFlat { .. }
+                | E::Beam(_)
+                | E::Sections(_)),
+            ) => Err(error).at(sections),
+            // Only matching by angle, as chosen, asks for it.
+            Err(error @ E::NotStarShaped { .. }) => Err(error).at(matching),
+            result => result.at(contour),
+        }?;
         ports.note(format!(
             "the contour replaces section {}; sections {} to {} move",
             result.section,

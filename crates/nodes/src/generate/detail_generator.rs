@@ -2,7 +2,8 @@
 //! Reference: thesis 6.1 and 6.3; paper 5.2.
 
 use maquette_geometry::generate::{
-    Case, GenerateOptions, Generated, LocalDetail, ViewPlacement, Weights, between_closed, two_views,
+    Case, Frame, GenerateError, GenerateOptions, Generated, LocalDetail, ViewPlacement, Weights, between_closed,
+    two_views,
 };
 use maquette_graph::{AtPort, Choices, NodeError, NodeKind};
 
@@ -31,6 +32,16 @@ impl Choices for WeightsChoice {
     const OPTIONS: &'static [(Self, &'static str, &'static str)] = &[
         (Self(Weights::Smooth), "smooth", "no crease along the rails"),
         (Self(Weights::Linear), "linear", "as printed in the thesis: creases along the rails"),
+    ];
+}
+
+#[derive(Clone, Copy)]
+struct FrameChoice(Frame);
+
+impl Choices for FrameChoice {
+    const OPTIONS: &'static [(Self, &'static str, &'static str)] = &[
+        (Self(Frame::Turning), "turning", "displacements turn with the closed curves: round stays round"),
+        (Self(Frame::Fixed), "fixed", "as printed in the thesis"),
     ];
 }
 
@@ -71,6 +82,7 @@ pub(crate) fn kind() -> NodeKind {
     node.soft_range(nodes, 16.0..=256.0);
     let stiffness = StiffnessInputs::declare(&mut node);
     let weights = node.choice::<WeightsChoice>("weights", "How one rail's shape turns into the next one's.");
+    let frame = node.choice::<FrameChoice>("frame", "Between closed curves: how what two rails add is blended.");
     let placement =
         node.choice::<PlacementChoice>("placement", "Depth of the contours of two views; a contour does not tell it.");
     let detail_reach = node.number(
@@ -97,6 +109,7 @@ pub(crate) fn kind() -> NodeKind {
             sections: ports.count(sections),
             nodes: ports.count(nodes),
             weights: ports.choice(weights).0,
+            frame: ports.choice(frame).0,
             placement: ports.choice(placement).0,
             detail: Some(LocalDetail { wave: ports.value(detail_wave), reach: ports.value(detail_reach) })
                 .filter(|detail| detail.reach < 1.0),
@@ -104,11 +117,14 @@ pub(crate) fn kind() -> NodeKind {
         };
         let progress = ports.progress_callback();
         let case = match ports.choice(case) {
-            CaseChoice::Auto => Case::of(drawn.len(), loops.len()).at(rails)?,
+            CaseChoice::Auto => match Case::of(drawn.len(), loops.len()) {
+                Err(error) if !matches!(loops.len(), 0 | 2) => Err(error).at(closed)?,
+                case => case.at(rails)?,
+            },
             CaseChoice::TwoViews => Case::TwoViews,
             CaseChoice::BetweenClosed => Case::BetweenClosed,
         };
-        let Generated { sections, notes, largest_gap } = match case {
+        let made = match case {
             Case::TwoViews => {
                 let four: &[_; 4] = drawn
                     .as_slice()
@@ -120,19 +136,37 @@ pub(crate) fn kind() -> NodeKind {
                         )
                     })
                     .at(rails)?;
-                two_views(four, &options, &progress).at(rails)?
+                two_views(four, &options, &progress)
             }
             Case::BetweenClosed => {
                 let [start, end] = loops else {
-                    return Err(NodeError::new(format!(
+                    return Err(format!(
                         "rails run between two closed curves, and {} arrive: connect both to \"closed\"",
                         loops.len()
-                    )));
+                    ))
+                    .at(closed);
                 };
-                between_closed(drawn, start, end, &options, &progress).at(rails)?
+                between_closed(drawn, start, end, &options, &progress)
             }
         };
+        use GenerateError as E;
+        let made = match made {
+            Err(E::Cancelled) => Err(NodeError::Cancelled),
+            Err(error @ E::TooFewSections { .. }) => Err(error).at(sections),
+            Err(error @ E::TooLarge { sections: many, nodes: each }) => {
+                Err(error).at(if many > each { sections } else { nodes })
+            }
+            Err(error @ E::Beam(_)) => Err(error).at(nodes),
+            Err(error @ E::Snap { .. }) => Err(error).at(snap),
+            Err(error @ (E::CurveIsOpen { .. } | E::CurveIsReversed { .. })) => Err(error).at(closed),
+            Err(E::TooFarOut { name }) if drawn.iter().all(|rail| rail.name() != name) => {
+                Err(E::TooFarOut { name }).at(closed)
+            }
+            made => made.at(rails),
+        };
+        let Generated { sections, notes, warnings, largest_gap } = made?;
         notes.iter().for_each(|note| ports.note(note));
+        warnings.iter().for_each(|warning| ports.warn(warning));
         ports.figure("largest-gap", largest_gap, "m");
         ports.write(generated, wire::Sections(sections));
         Ok(())

@@ -5,7 +5,6 @@ use maquette_geometry::curve::Curve;
 use maquette_geometry::file_format::{FileFormat, curves_json, svg};
 use maquette_graph::{AtPort, Choices, NodeKind};
 
-use crate::source_file;
 use crate::view_plane::ViewPlane;
 use crate::wire;
 
@@ -67,10 +66,10 @@ pub(crate) fn kind() -> NodeKind {
         node.length("tolerance", 1e-4, 1e-9..=1.0, "SVG: largest distance of the points' polyline from the true path.");
     node.soft_range(tolerance, 1e-5..=1e-2);
     let curves = node.output::<wire::Curves>("curves", "The curves in the order of the file, with their names.");
-    node.fingerprint(move |ports| source_file::fingerprint(ports, file));
+    node.reads_file(file);
     node.evaluate(move |ports| {
         let path = ports.path(file)?;
-        let bytes = source_file::read(ports, file)?;
+        let bytes = ports.file(file)?;
         let imported = match FileFormat::from_path(&path.to_string_lossy()).at(file)? {
             FileFormat::Json => curves_json::read(&bytes).at(file)?,
             FileFormat::Svg => {

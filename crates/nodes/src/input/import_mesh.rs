@@ -5,7 +5,6 @@ use maquette_geometry::file_format::{FileFormat, gltf_read, obj};
 use maquette_geometry::mesh::{join, transform};
 use maquette_graph::{AtPort, NodeKind};
 
-use crate::source_file;
 use crate::wire;
 
 pub(crate) fn kind() -> NodeKind {
@@ -15,10 +14,10 @@ pub(crate) fn kind() -> NodeKind {
     let scale = node.length("scale", 1.0, 1e-9..=1e9, "Length of one unit of the file; glTF's is a metre.");
     node.soft_range(scale, 0.001..=1.0);
     let mesh = node.output::<wire::Mesh>("mesh", "The mesh.");
-    node.fingerprint(move |ports| source_file::fingerprint(ports, file));
+    node.reads_file(file);
     node.evaluate(move |ports| {
         let path = ports.path(file)?;
-        let bytes = source_file::read(ports, file)?;
+        let bytes = ports.file(file)?;
         let meshes = match FileFormat::from_path(&path.to_string_lossy()).at(file)? {
             FileFormat::Glb | FileFormat::Gltf => gltf_read::read(&bytes).at(file)?,
             FileFormat::Obj => obj::read(&bytes).at(file)?,

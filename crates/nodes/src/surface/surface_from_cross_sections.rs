@@ -1,8 +1,8 @@
 //! **Surface from cross-sections**: quads through the sections, smooth across and along.
 //! Reference: thesis 4, Figure 6.11.
 
-use maquette_geometry::surface::{Cap, PoleShape, SkinOptions, UParameter, skin};
-use maquette_graph::{AtPort, Choices, NodeKind};
+use maquette_geometry::surface::{Cap, PoleShape, SkinError, SkinOptions, UParameter, skin};
+use maquette_graph::{AtPort, Choices, NodeError, NodeKind};
 
 use crate::wire;
 
@@ -63,8 +63,21 @@ pub(crate) fn kind() -> NodeKind {
             parameter: ports.choice(parameter).0,
             pole: ports.choice(pole).0,
         };
-        let skinned = skin(&ports.read(sections).0, &options, &ports.progress_callback()).at(sections)?;
-        ports.write(mesh, wire::Mesh::new(skinned));
+        let skinned = skin(&ports.read(sections).0, &options, &ports.progress_callback());
+        let skinned = match skinned {
+            Err(error @ SkinError::OutOfRange { what: "rows", .. }) => Err(error).at(rows),
+            Err(error @ SkinError::OutOfRange { .. }) => Err(error).at(columns),
+            Err(error @ (SkinError::CapOnOpenSection { section: 0 } | SkinError::CapWithoutArea { section: 0 })) => {
+                Err(error).at(cap_start)
+            }
+            Err(error @ (SkinError::CapOnOpenSection { .. } | SkinError::CapWithoutArea { .. })) => {
+                Err(error).at(cap_end)
+            }
+            Err(error @ SkinError::TooManyVertices { .. }) => Err(error).at(rows),
+            Err(SkinError::Cancelled) => Err(NodeError::Cancelled),
+            skinned => skinned.at(sections),
+        };
+        ports.write(mesh, wire::Mesh::new(skinned?));
         Ok(())
     });
     node
