@@ -73,8 +73,20 @@ fn surfaces_of_revolution_are_round_from_any_rails() {
             assert!(off < 1e-5, "{} rails: {off}", angles.len());
         }
     }
-    let fixed = make(&vase(&evenly(4), (0.05, 0.05), straight, same), Frame::Fixed, Weights::Smooth);
-    assert!(out_of_round(&fixed, straight) > 0.1);
+}
+
+#[test]
+fn fixed_frames_shrink_a_swelling_as_printed() {
+    let drawn = vase(&evenly(4), (0.05, 0.05), straight, same);
+    for weights in [Weights::Smooth, Weights::Linear] {
+        let made = make(&drawn, Frame::Fixed, weights);
+        for section in made.sections.iter() {
+            // Half-way between two rails a quarter of a turn apart.
+            let (at_rail, between) = (section[0].x.hypot(section[0].z), section[9].x.hypot(section[9].z));
+            assert!((between - (0.05 + (at_rail - 0.05) * 0.5_f64.sqrt())).abs() < 1e-7, "{at_rail} {between}");
+        }
+        assert!(out_of_round(&made, straight) > 0.1);
+    }
 }
 
 #[test]
