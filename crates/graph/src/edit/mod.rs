@@ -53,6 +53,11 @@
 //! assert_eq!(file::to_text(&graph), full);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! [`Graph::apply`]: crate::Graph::apply
+//! [`Graph::apply_all`]: crate::Graph::apply_all
+//! [`Graph::add`]: crate::Graph::add
+//! [`Graph::connect`]: crate::Graph::connect
 
 mod apply;
 pub mod compound;
