@@ -29,6 +29,14 @@ pub struct Link {
     pub output: String,
 }
 
+/// A link that leaves a node.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Outgoing {
+    pub(crate) output: String,
+    pub(crate) to: NodeId,
+    pub(crate) input: String,
+}
+
 /// What an input holds.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
@@ -344,10 +352,21 @@ impl Graph {
         Ok(())
     }
 
-    fn insert(&mut self, name: &str, kind_name: &str, kind: Option<Arc<NodeKind>>) -> Result<NodeId, GraphError> {
+    /// The identity that the node after the next `count` ones would get.
+    pub(crate) fn id_after(&self, count: u32) -> NodeId {
+        NodeId(self.next.saturating_add(count))
+    }
+
+    /// Adds a node without inputs, under an identity that no node has.
+    pub(crate) fn insert(
+        &mut self,
+        id: NodeId,
+        name: &str,
+        kind_name: &str,
+        kind: Option<Arc<NodeKind>>,
+    ) -> Result<(), GraphError> {
         self.check_name(name)?;
-        let id = NodeId(self.next);
-        self.next += 1;
+        self.next = self.next.max(id.0.saturating_add(1));
         self.nodes.insert(
             id,
             Node {
@@ -364,7 +383,7 @@ impl Graph {
         self.names.insert(name.to_owned(), id);
         self.topology.add(id);
         self.touch(id);
-        Ok(id)
+        Ok(())
     }
 
     /// Adds a node with every input at its default.
@@ -372,16 +391,22 @@ impl Graph {
     /// # Errors
     /// Unknown kind, or a name that is taken or can't be written.
     pub fn add(&mut self, catalogue: &Catalogue, kind: &str, name: &str) -> Result<NodeId, GraphError> {
-        let known = catalogue.kind(kind).ok_or_else(|| GraphError::UnknownKind {
+        let (id, known) = (self.id_after(0), Self::known_kind(catalogue, kind)?);
+        self.insert(id, name, kind, Some(known)).map(|()| id)
+    }
+
+    /// The kind of that name, or an error that suggests another.
+    pub(crate) fn known_kind(catalogue: &Catalogue, kind: &str) -> Result<Arc<NodeKind>, GraphError> {
+        catalogue.kind(kind).cloned().ok_or_else(|| GraphError::UnknownKind {
             kind: kind.to_owned(),
             suggestion: catalogue.suggest(kind).map(str::to_owned),
-        })?;
-        self.insert(name, kind, Some(known.clone()))
+        })
     }
 
     /// Adds a placeholder for a node whose kind is unknown.
     pub(crate) fn add_placeholder(&mut self, kind: &str, name: &str) -> Result<NodeId, GraphError> {
-        self.insert(name, kind, None)
+        let id = self.id_after(0);
+        self.insert(id, name, kind, None).map(|()| id)
     }
 
     /// Removes a node and every link from and to it.
@@ -389,18 +414,33 @@ impl Graph {
     /// # Errors
     /// The node is gone already.
     pub fn remove(&mut self, id: NodeId) -> Result<(), GraphError> {
+        self.take(id).map(drop)
+    }
+
+    /// Removes a node and gives it back with the links that left it.
+    pub(crate) fn take(&mut self, id: NodeId) -> Result<(Node, Vec<Outgoing>), GraphError> {
         let fed = self.topology.fed_by(id);
         let node = self.nodes.remove(&id).ok_or(GraphError::NoSuchNode)?;
+        let mut outgoing = Vec::with_capacity(fed.len());
         for (to, input) in fed {
-            if let Some(dependent) = self.nodes.get_mut(&to) {
-                dependent.inputs.remove(&input);
+            if let Some(dependent) = self.nodes.get_mut(&to)
+                && let Some(Source::Link(link)) = dependent.inputs.remove(&input)
+            {
+                outgoing.push(Outgoing { output: link.output, to, input });
             }
             self.touch(to);
         }
         self.names.remove(&node.name);
         self.topology.remove(id);
         self.revision += 1;
-        Ok(())
+        Ok((node, outgoing))
+    }
+
+    /// Forgets that identities from this one on were given: for what was added and taken back at once.
+    pub(crate) fn give_back_ids(&mut self, first: NodeId) {
+        if self.nodes.range(first..).next().is_none() {
+            self.next = self.next.min(first.0);
+        }
     }
 
     /// Gives a node another name. Links follow; nothing is evaluated again.
@@ -408,9 +448,14 @@ impl Graph {
     /// # Errors
     /// A name that is taken or can't be written.
     pub fn rename(&mut self, id: NodeId, name: &str) -> Result<(), GraphError> {
+        self.replace_name(id, name).map(drop)
+    }
+
+    /// As [`Graph::rename`]; gives the name that was there.
+    pub(crate) fn replace_name(&mut self, id: NodeId, name: &str) -> Result<String, GraphError> {
         let old = self.nodes.get(&id).ok_or(GraphError::NoSuchNode)?.name.clone();
         if old == name {
-            return Ok(());
+            return Ok(old);
         }
         self.check_name(name)?;
         self.names.remove(&old);
@@ -418,7 +463,7 @@ impl Graph {
         if let Some(node) = self.nodes.get_mut(&id) {
             name.clone_into(&mut node.name);
         }
-        Ok(())
+        Ok(old)
     }
 
     /// Puts a literal at an input, in place of whatever was there.
@@ -426,6 +471,16 @@ impl Graph {
     /// # Errors
     /// No such input, or a literal that does not fit: wrong type, out of range, not finite.
     pub fn set(&mut self, id: NodeId, input: &str, literal: Literal) -> Result<(), GraphError> {
+        self.replace_by_literal(id, input, literal).map(drop)
+    }
+
+    /// As [`Graph::set`]; gives what was there.
+    pub(crate) fn replace_by_literal(
+        &mut self,
+        id: NodeId,
+        input: &str,
+        literal: Literal,
+    ) -> Result<Option<Source>, GraphError> {
         let node = self.nodes.get(&id).ok_or(GraphError::NoSuchNode)?;
         if let Some(kind) = &node.kind {
             let spec = kind.find_input(input).ok_or_else(|| GraphError::NoSuchInput {
@@ -445,14 +500,13 @@ impl Graph {
                 }
                 other => other,
             };
-            self.put(id, input, Some(Source::literal(literal)));
+            Ok(self.put(id, input, Some(Source::literal(literal))))
         } else {
             if let Some(reason) = literal.not_finite() {
                 return Err(GraphError::BadLiteral { node: node.name.clone(), port: input.to_owned(), reason });
             }
-            self.put(id, input, Some(Source::literal(literal)));
+            Ok(self.put(id, input, Some(Source::literal(literal))))
         }
-        Ok(())
     }
 
     /// Puts an input back to its default, unlinked.
@@ -460,25 +514,29 @@ impl Graph {
     /// # Errors
     /// The node is gone.
     pub fn reset(&mut self, id: NodeId, input: &str) -> Result<(), GraphError> {
+        self.replace_by_default(id, input).map(drop)
+    }
+
+    /// As [`Graph::reset`]; gives what was there.
+    pub(crate) fn replace_by_default(&mut self, id: NodeId, input: &str) -> Result<Option<Source>, GraphError> {
         if !self.nodes.contains_key(&id) {
             return Err(GraphError::NoSuchNode);
         }
-        self.put(id, input, None);
-        Ok(())
+        Ok(self.put(id, input, None))
     }
 
-    pub(crate) fn put(&mut self, id: NodeId, input: &str, source: Option<Source>) {
+    /// Puts something at an input that was checked to fit, and gives what was there.
+    pub(crate) fn put(&mut self, id: NodeId, input: &str, source: Option<Source>) -> Option<Source> {
         self.topology.unlink(id, input);
         if let Some(Source::Link(link)) = &source {
             self.topology.link(link.node, id, input);
         }
-        if let Some(node) = self.nodes.get_mut(&id) {
-            match source {
-                Some(source) => node.inputs.insert(input.to_owned(), source),
-                None => node.inputs.remove(input),
-            };
-        }
+        let old = self.nodes.get_mut(&id).and_then(|node| match source {
+            Some(source) => node.inputs.insert(input.to_owned(), source),
+            None => node.inputs.remove(input),
+        });
         self.touch(id);
+        old
     }
 
     /// Says why a link would be refused.
@@ -576,9 +634,20 @@ impl Graph {
         to: NodeId,
         input: &str,
     ) -> Result<(), ConnectError> {
+        self.replace_by_link(catalogue, from, output, to, input).map(drop)
+    }
+
+    /// As [`Graph::connect`]; gives what was there.
+    pub(crate) fn replace_by_link(
+        &mut self,
+        catalogue: &Catalogue,
+        from: NodeId,
+        output: &str,
+        to: NodeId,
+        input: &str,
+    ) -> Result<Option<Source>, ConnectError> {
         self.check_link(catalogue, from, output, to, input)?;
-        self.put(to, input, Some(Source::Link(Link { node: from, output: output.to_owned() })));
-        Ok(())
+        Ok(self.put(to, input, Some(Source::Link(Link { node: from, output: output.to_owned() }))))
     }
 
     /// Places a node on the editor's canvas. Nothing is evaluated again.
@@ -586,9 +655,18 @@ impl Graph {
     /// # Errors
     /// The node is gone.
     pub fn set_position(&mut self, id: NodeId, position: Option<[f64; 2]>) -> Result<(), GraphError> {
+        self.replace_position(id, position).map(drop)
+    }
+
+    /// As [`Graph::set_position`]; gives where it was.
+    pub(crate) fn replace_position(
+        &mut self,
+        id: NodeId,
+        position: Option<[f64; 2]>,
+    ) -> Result<Option<[f64; 2]>, GraphError> {
         let position = position.filter(|p| p.iter().all(|c| c.is_finite()));
-        self.nodes.get_mut(&id).ok_or(GraphError::NoSuchNode)?.position = position;
-        Ok(())
+        let node = self.nodes.get_mut(&id).ok_or(GraphError::NoSuchNode)?;
+        Ok(std::mem::replace(&mut node.position, position))
     }
 
     /// Remarks on a node. Nothing is evaluated again.
@@ -596,7 +674,12 @@ impl Graph {
     /// # Errors
     /// The node is gone.
     pub fn set_note(&mut self, id: NodeId, note: impl Into<String>) -> Result<(), GraphError> {
-        self.nodes.get_mut(&id).ok_or(GraphError::NoSuchNode)?.note = note.into();
-        Ok(())
+        self.replace_note(id, note.into()).map(drop)
+    }
+
+    /// As [`Graph::set_note`]; gives the note that was there.
+    pub(crate) fn replace_note(&mut self, id: NodeId, note: String) -> Result<String, GraphError> {
+        let node = self.nodes.get_mut(&id).ok_or(GraphError::NoSuchNode)?;
+        Ok(std::mem::replace(&mut node.note, note))
     }
 }

@@ -40,6 +40,7 @@
 //! and the layout of the text.
 
 mod catalogue;
+pub mod edit;
 mod evaluate;
 pub mod file;
 mod graph;
@@ -53,6 +54,7 @@ mod topology;
 mod value;
 
 pub use catalogue::{Catalogue, CatalogueError};
+pub use edit::{Edit, EditError, History, NodeRecord};
 pub use evaluate::{
     CancelToken, Evaluation, Evaluator, EvaluatorOptions, Event, EventKind, EventLog, Events, Failure, Outcome,
     OutcomeState, Request,

@@ -36,6 +36,10 @@ impl Topology {
         if from != to && (is_source || self.links.edges_directed(to, Direction::Outgoing).next().is_none()) {
             return None;
         }
+        // Whether there is a path is found much faster than the shortest one, and mostly there is none.
+        if !petgraph::algo::has_path_connecting(&self.links, to, from, None) {
+            return None;
+        }
         let (_, path) = petgraph::algo::astar(&self.links, to, |n| n == from, |_| 1, |_| 0)?;
         Some(path.into_iter().map(|place| self.links[place]).collect())
     }

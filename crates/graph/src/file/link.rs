@@ -52,7 +52,7 @@ impl<'a> Reader<'a> {
         }
         for ((link, from), _) in others {
             match self.graph.check_acyclic(from.node, link.to) {
-                Ok(()) => self.graph.put(link.to, &link.input, Some(Source::Link(from))),
+                Ok(()) => drop(self.graph.put(link.to, &link.input, Some(Source::Link(from)))),
                 Err(error) => self.refuse(link, error.to_string(), "remove one of its links"),
             }
         }

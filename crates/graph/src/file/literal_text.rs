@@ -7,7 +7,7 @@ use crate::file::syntax::in_words;
 use crate::literal::{Literal, Stroke};
 
 /// What a file may say at an input.
-pub(super) enum Spelled {
+pub(crate) enum Spelled {
     Literal(Literal),
     /// "node.output"
     Link(String),
@@ -50,7 +50,7 @@ pub fn parse_literal(text: &str) -> Result<Literal, LiteralError> {
     }
 }
 
-pub(super) fn parse(text: &str) -> Result<Spelled, LiteralError> {
+pub(crate) fn parse(text: &str) -> Result<Spelled, LiteralError> {
     let text = text.trim();
     let fail = |error: ron::error::SpannedError| LiteralError {
         offset: LineIndex::new(text).byte(text, error.span.start.line, error.span.start.col),

@@ -322,7 +322,7 @@ impl<'a> Reader<'a> {
         match (parse(piece), spec) {
             (Ok(Spelled::Link(address)), _) => self.links.push(PendingLink { to: id, input, address, raw }),
             // What an unknown input means is not known either: its text stays, digit for digit.
-            (_, None) => self.graph.put(id, &input, Some(Source::Unread(piece.to_owned()))),
+            (_, None) => drop(self.graph.put(id, &input, Some(Source::Unread(piece.to_owned())))),
             (Ok(Spelled::Literal(literal)), Some(spec)) => match spec.refuses(&literal) {
                 Some(reason) => unread = Some((at, input, reason)),
                 // It was checked, so the graph can't refuse it.

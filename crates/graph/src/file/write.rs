@@ -1,10 +1,11 @@
 //! From a graph to text: stable order, one value a line.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use crate::file::FORMAT_VERSION;
 use crate::file::tree::FileTree;
-use crate::graph::{Graph, Node, Source};
+use crate::graph::{Graph, Node, NodeId, Source};
 use crate::literal::{Literal, Stroke, StrokePoint};
 
 /// The graph as the text of a file. Reading it back gives an equal graph, and writing that the same text.
@@ -39,6 +40,27 @@ pub fn to_text(graph: &Graph) -> String {
         if !replaced {
             line(&mut out, 1, &format!("{}: {raw},", identifier(name)));
         }
+    }
+    out.push_str(")\n");
+    out
+}
+
+/// Some nodes as the text of a graph. Links from nodes that are not among them stay in the text, by name.
+pub(crate) fn selection_to_text(graph: &Graph, nodes: &BTreeSet<NodeId>) -> String {
+    let nodes: Vec<_> = nodes.iter().filter_map(|id| graph.node(*id)).collect();
+    let mut out = String::from("(\n");
+    line(&mut out, 1, &format!("version: {FORMAT_VERSION},"));
+    line(&mut out, 1, "nodes: {");
+    for node in &nodes {
+        write_node(&mut out, graph, node);
+    }
+    line(&mut out, 1, "},");
+    if nodes.iter().any(|node| node.position().is_some()) {
+        line(&mut out, 1, "layout: {");
+        for (name, [x, y]) in nodes.iter().filter_map(|node| Some((node.name(), node.position()?))) {
+            line(&mut out, 2, &format!("{}: ({}, {}),", quoted(name), number(x), number(y)));
+        }
+        line(&mut out, 1, "},");
     }
     out.push_str(")\n");
     out

@@ -1,0 +1,42 @@
+//! A node out of its links.
+
+use crate::catalogue::Catalogue;
+use crate::edit::Edit;
+use crate::edit::NodeRecord;
+use crate::edit::compound::{Plan, address, fit, input_wire, output_wire};
+use crate::graph::{Graph, GraphError, Link, NodeId, Source};
+
+/// Removes a node and closes its links again: what it fed is linked to what fed it, to the first of its inputs (in the
+/// order of its kind) whose source has the very type, or else one that can be converted. Links that can't be closed
+/// are remarked on.
+///
+/// # Errors
+/// The node is gone.
+pub fn dissolve(graph: &Graph, catalogue: &Catalogue, id: NodeId) -> Result<Plan, GraphError> {
+    let node = graph.node(id).ok_or(GraphError::NoSuchNode)?;
+    let declared = node.kind().map(|kind| kind.inputs()).unwrap_or_default();
+    let place = |name: &str| declared.iter().position(|spec| spec.name == name).unwrap_or(usize::MAX);
+    let mut sources: Vec<(&str, &Link)> = node
+        .sources()
+        .filter_map(|(input, source)| if let Source::Link(link) = source { Some((input, link)) } else { None })
+        .collect();
+    sources.sort_by_key(|(input, _)| place(input));
+    let mut plan = Plan { edits: vec![Edit::RemoveNode(id)], ..Plan::default() };
+    for outgoing in NodeRecord::outgoing_of(graph, id) {
+        let wanted = input_wire(graph, outgoing.to, &outgoing.input);
+        let fitting =
+            sources.iter().filter_map(|(_, link)| Some((fit(catalogue, output_wire(graph, link), wanted)?, *link)));
+        match fitting.min_by_key(|(fit, _)| *fit) {
+            Some((_, link)) => {
+                plan.edits.push(Edit::connect(link.node, &link.output, outgoing.to, &outgoing.input));
+            }
+            None => {
+                let from = address(graph, &Link { node: id, output: outgoing.output });
+                let to = graph.node(outgoing.to).map_or("", |node| node.name());
+                let reason = format!("the link from \"{from}\" goes: nothing that fed \"{}\" fits here", node.name());
+                plan.remark(to, &outgoing.input, reason);
+            }
+        }
+    }
+    Ok(plan)
+}
