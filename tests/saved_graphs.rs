@@ -165,7 +165,7 @@ fn the_vest_passes_through_its_five_rails_its_hem_its_neckline_and_its_chest() {
     assert_fair("vest without its chest", plain, false, 25.0);
     for rail in &rails {
         // They were drawn to within 0.2 mm of hem and neckline, and are bent to meet them.
-        assert!(farthest(plain, rail) < 3e-4, "{}: {}", rail.name(), farthest(plain, rail));
+        assert!(farthest(plain, rail) < 4e-4, "{}: {}", rail.name(), farthest(plain, rail));
     }
     let stack = sections(&saved, &evaluation, "body");
     assert_eq!(stack.rails().len(), 5);
