@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::IsTerminal as _;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -11,6 +12,7 @@ use maquette_graph::{Event, EventKind, Events, NodeId};
 pub(super) struct Progress {
     bar: ProgressBar,
     running: Mutex<BTreeMap<NodeId, String>>,
+    planned: AtomicBool,
 }
 
 impl Progress {
@@ -20,7 +22,7 @@ impl Progress {
         if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} nodes  {wide_msg}") {
             bar.set_style(style);
         }
-        Self { bar, running: Mutex::default() }
+        Self { bar, running: Mutex::default(), planned: AtomicBool::new(false) }
     }
 
     pub(super) fn finish(&self) {
@@ -39,21 +41,31 @@ impl Events for Progress {
         if self.bar.is_hidden() {
             return;
         }
+        // What the plan settles by itself comes before `Planned`, and is not among the nodes that it counts.
+        if !self.planned.load(Ordering::Relaxed) && !matches!(event.kind, EventKind::Planned(_)) {
+            return;
+        }
         match &event.kind {
-            EventKind::Planned(count) => self.bar.set_length(*count as u64),
+            EventKind::Planned(count) => {
+                self.planned.store(true, Ordering::Relaxed);
+                self.bar.set_length(*count as u64);
+            }
             EventKind::Started => self.change(|running| {
                 running.insert(event.node, event.name.to_owned());
             }),
             EventKind::Progress(fraction) => self.change(|running| {
                 running.insert(event.node, format!("{} {:.0} %", event.name, fraction * 100.0));
             }),
-            EventKind::Finished(_) | EventKind::Failed(_) | EventKind::Waiting(_) | EventKind::Cancelled => {
+            EventKind::Hit
+            | EventKind::Finished(_)
+            | EventKind::Failed(_)
+            | EventKind::Waiting(_)
+            | EventKind::Cancelled => {
                 self.change(|running| {
                     running.remove(&event.node);
                 });
                 self.bar.inc(1);
             }
-            EventKind::Hit => {}
         }
     }
 }

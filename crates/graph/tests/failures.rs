@@ -279,7 +279,7 @@ fn everyone_to_blame_is_named_whenever_it_fails_and_whatever_is_remembered() {
                 rig.evaluator.forget();
             }
         }
-        // A wrong link is told even where the node before it has failed.
+        // Whoever recovers is no longer named.
         rig.set("minus.a", 4.0);
         assert_eq!(state(&rig.evaluate(&["other"]), rig.id("other")), "waiting on unconnected");
     }
