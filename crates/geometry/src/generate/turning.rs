@@ -10,9 +10,10 @@
 //! where `base = a H00 + b H01` joins the ends of the generator, `delta` is a rail less the base between its own ends,
 //! and `theta` the angle at which the closed curves are seen from their centres. `m` is what all rails have in common:
 //! the rest turns, that does not, or a bent tube would be pinched between its rails as the vase was. It is the vector
-//! in the best fit, by least squares over the rails, of `m + R(theta_k) r` to `delta_k`. So surfaces of revolution, and
-//! those bent sideways section by section, come out round from any rails half a turn or so around. Rails and closed
-//! curves are reproduced as by [`blend_generators`](super::blend_generators), and with `R = 1` it is the same surface.
+//! in the best fit, by least squares over the rails, of `m + R(theta_k) r` to `delta_k`. So surfaces of revolution come
+//! out round from any two rails, and so do tubes bent sideways where the rails do not all stand on one side. Rails and
+//! closed curves are reproduced as by [`blend_generators`](super::blend_generators), and with `R = 1` it is the same
+//! surface. The price of `m` is that a swelling of one rail of `n` reaches all patches, by `(1 - cos(pi/n))/n` of itself.
 
 use std::f64::consts::TAU;
 

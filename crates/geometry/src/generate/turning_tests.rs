@@ -213,9 +213,8 @@ fn without_a_way_to_turn_the_frame_is_fixed_with_a_note() {
     // A lip with a deep fold between two rails; the feet stay where they are.
     let (rails, foot, lip) = vase(&evenly(4), (0.05, 0.05), straight, same);
     let hook = |p: DVec3| {
-        let a = (-p.z).atan2(p.x);
-        let fold = (1.0 - ((a - 0.8) / 0.3).powi(2)).max(0.0);
-        DQuat::from_rotation_y(2.0 * fold * (p.length() - 0.4).signum() * (a - 0.8)) * p * DVec3::new(1.0, 1.0, 1.0)
+        let behind = (-p.z).atan2(p.x) - 0.8;
+        DQuat::from_rotation_y(-2.0 * behind * (1.0 - (behind / 0.3).powi(2)).max(0.0)) * p
     };
     let folded = lip.map(hook).unwrap();
     let drawn = (rails, foot, folded);
