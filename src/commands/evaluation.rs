@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use maquette_graph::{Catalogue, Evaluation, Evaluator, EvaluatorOptions, NodeId, OutcomeState, Request};
+use maquette_graph::{CancelToken, Catalogue, Evaluation, Evaluator, EvaluatorOptions, NodeId, OutcomeState, Request};
 
 use super::graph_file::GraphFile;
 use super::progress_bar::Progress;
@@ -39,8 +39,27 @@ pub(super) struct Evaluated {
     pub(super) failures: Vec<String>,
 }
 
-/// Evaluates; what fails in a node is in [`Evaluated::failures`], what is wrong with graph or arguments is an error.
-pub(super) fn evaluate(catalogue: &Catalogue, arguments: &EvaluationArguments) -> Result<Evaluated, Vec<String>> {
+/// A graph that is ready to be evaluated.
+pub(super) struct Opened {
+    pub(super) file: GraphFile,
+    /// Its results that were asked for.
+    pub(super) targets: Vec<NodeId>,
+}
+
+/// Of which nodes the values are kept for a closer look.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Keep {
+    Results,
+    Everything,
+}
+
+/// An evaluator with the threads asked for.
+pub(super) fn evaluator(arguments: &EvaluationArguments) -> Evaluator {
+    Evaluator::new(&EvaluatorOptions { threads: usize::from(arguments.threads), ..Default::default() })
+}
+
+/// Reads the graph and puts the values given by `--set`; what is wrong with graph or arguments is an error.
+pub(super) fn open(catalogue: &Catalogue, arguments: &EvaluationArguments) -> Result<Opened, Vec<String>> {
     let mut file = GraphFile::open_sound(catalogue, &arguments.graph, arguments.quiet)?;
     let wrong: Vec<String> =
         arguments.set.iter().filter_map(|set| overrides::apply(&mut file.loaded.graph, set).err()).collect();
@@ -49,35 +68,55 @@ pub(super) fn evaluate(catalogue: &Catalogue, arguments: &EvaluationArguments) -
     }
     let targets = targets(&file, &arguments.outputs)?;
     let missing = file.missing_links(&targets);
-    if !missing.is_empty() {
-        return Err(missing);
-    }
-    let progress = Progress::new(!arguments.quiet);
-    let mut evaluator =
-        Evaluator::new(&EvaluatorOptions { threads: usize::from(arguments.threads), ..Default::default() });
-    let request = Request::nodes(&targets).events(&progress).base(file.base());
-    let evaluation = evaluator.evaluate(catalogue, &file.loaded.graph, &request);
-    progress.finish();
-    let mut failures = Vec::new();
-    for (id, outcome) in evaluation.outcomes() {
-        match &outcome.state {
-            OutcomeState::Failed(failure) => {
-                failures.push(file.about(id, failure.port.as_deref(), &format!("error: {}", failure.message)));
+    if missing.is_empty() { Ok(Opened { file, targets }) } else { Err(missing) }
+}
+
+/// Evaluates; what fails in a node is in [`Evaluated::failures`], what is wrong with graph or arguments is an error.
+pub(super) fn evaluate(catalogue: &Catalogue, arguments: &EvaluationArguments) -> Result<Evaluated, Vec<String>> {
+    let opened = open(catalogue, arguments)?;
+    let mut evaluator = evaluator(arguments);
+    Ok(opened.evaluate(catalogue, &mut evaluator, arguments.quiet, Keep::Results, &CancelToken::new()))
+}
+
+impl Opened {
+    /// Evaluates with what the evaluator remembers from earlier times.
+    pub(super) fn evaluate(
+        self,
+        catalogue: &Catalogue,
+        evaluator: &mut Evaluator,
+        quiet: bool,
+        keep: Keep,
+        cancel: &CancelToken,
+    ) -> Evaluated {
+        let Self { file, targets } = self;
+        let graph = &file.loaded.graph;
+        let progress = Progress::new(!quiet);
+        let asked = if keep == Keep::Everything { graph.upstream(&targets) } else { targets.clone() };
+        let request = Request::nodes(&asked).events(&progress).base(file.base()).cancel(cancel);
+        let evaluation = evaluator.evaluate(catalogue, graph, &request);
+        progress.finish();
+        let mut failures = Vec::new();
+        for (id, outcome) in evaluation.outcomes() {
+            match &outcome.state {
+                OutcomeState::Failed(failure) => {
+                    failures.push(file.about(id, failure.port.as_deref(), &format!("error: {}", failure.message)));
+                }
+                OutcomeState::Waiting(on) if targets.contains(&id) => {
+                    failures.push(file.about(
+                        id,
+                        None,
+                        &format!("error: not made, because \"{}\" failed", on.join("\", \"")),
+                    ));
+                }
+                OutcomeState::Done { report, .. } if !quiet => {
+                    let warnings = report.warnings.iter();
+                    warnings.for_each(|w| console::remark(file.about(id, None, &format!("warning: {w}"))));
+                }
+                _ => {}
             }
-            OutcomeState::Waiting(on) if targets.contains(&id) => {
-                failures.push(file.about(
-                    id,
-                    None,
-                    &format!("error: not made, because \"{}\" failed", on.join("\", \"")),
-                ));
-            }
-            OutcomeState::Done { report, .. } if !arguments.quiet => {
-                report.warnings.iter().for_each(|w| console::remark(file.about(id, None, &format!("warning: {w}"))));
-            }
-            _ => {}
         }
+        Evaluated { file, targets, evaluation, failures }
     }
-    Ok(Evaluated { file, targets, evaluation, failures })
 }
 
 fn targets(file: &GraphFile, wanted: &[String]) -> Result<Vec<NodeId>, Vec<String>> {

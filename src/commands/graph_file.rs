@@ -10,6 +10,8 @@ use super::console;
 /// A graph with the file it came from.
 pub(super) struct GraphFile {
     pub(super) path: PathBuf,
+    /// What stands in the file.
+    pub(super) text: String,
     pub(super) loaded: Loaded,
 }
 
@@ -27,8 +29,15 @@ impl GraphFile {
             };
             vec![format!("{name}: error: {reason}")]
         })?;
+        Self::from_bytes(catalogue, path, bytes)
+    }
+
+    /// Reads a graph from the bytes of a file.
+    pub(super) fn from_bytes(catalogue: &Catalogue, path: &Path, bytes: Vec<u8>) -> Result<Self, Refused> {
+        let name = path.display();
         let loaded = file::from_bytes(catalogue, &bytes).map_err(|error| vec![format!("{name}:{error}")])?;
-        Ok(Self { path: path.to_owned(), loaded })
+        let text = String::from_utf8(bytes).map_err(|_| vec![format!("{name}: error: the file is not UTF-8 text")])?;
+        Ok(Self { path: path.to_owned(), text, loaded })
     }
 
     /// Reads a graph that is to be evaluated: says its warnings, and refuses it where something is wrong.
@@ -76,20 +85,22 @@ impl GraphFile {
         missing
     }
 
+    /// Files that the graph names: the node, its input, the path.
+    pub(super) fn files(&self) -> impl Iterator<Item = (NodeId, &str, PathBuf)> {
+        self.loaded.graph.nodes().flat_map(move |(id, node)| {
+            node.sources().filter_map(move |(input, source)| match source {
+                Source::Literal { literal: Literal::File(path), .. } if !path.is_empty() => {
+                    Some((id, input, self.base().join(path)))
+                }
+                _ => None,
+            })
+        })
+    }
+
     /// Files that the graph names and that are not there.
     pub(super) fn missing_files(&self) -> Vec<String> {
-        let mut missing = Vec::new();
-        for (id, node) in self.loaded.graph.nodes() {
-            for (input, source) in node.sources() {
-                if let Source::Literal { literal: Literal::File(path), .. } = source
-                    && !path.is_empty()
-                    && !self.base().join(path).is_file()
-                {
-                    let message = format!("error: the file {} does not exist", self.base().join(path).display());
-                    missing.push(self.about(id, Some(input), &message));
-                }
-            }
-        }
-        missing
+        let missing = self.files().filter(|(_, _, path)| !path.is_file());
+        let message = |path: &Path| format!("error: the file {} does not exist", path.display());
+        missing.map(|(id, input, path)| self.about(id, Some(input), &message(&path))).collect()
     }
 }

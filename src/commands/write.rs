@@ -44,14 +44,33 @@ pub(super) fn scene(path: &Path, format: FileFormat, scene: &Scene) -> Result<us
     whole(path, &bytes).map(|()| bytes.len())
 }
 
+/// Replaces a file that is there: what a link leads to, with the permissions it has. A file that is protected against
+/// writing is left as it is.
+pub(super) fn replaced(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    let fail = |error: std::io::Error| format!("{}: it can't be written: {error}", path.display());
+    let real = path.canonicalize().map_err(fail)?;
+    let permissions = std::fs::metadata(&real).map_err(fail)?.permissions();
+    if permissions.readonly() {
+        return Err(format!("{}: it can't be written: it is protected against writing", path.display()));
+    }
+    put(&real, bytes, Some(permissions))
+}
+
 /// Writes a file beside, then puts it in place, so that nobody ever sees half of it.
 pub(super) fn whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    put(path, bytes, None)
+}
+
+fn put(path: &Path, bytes: &[u8], permissions: Option<std::fs::Permissions>) -> Result<(), String> {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let attempt = || -> std::io::Result<()> {
+    let attempt = move || -> std::io::Result<()> {
         let mut file = tempfile::Builder::new().prefix(".maquette-").tempfile_in(folder)?;
         file.write_all(bytes)?;
         file.as_file().sync_all()?;
-        readable_by_all(file.as_file())?;
+        match permissions {
+            Some(permissions) => file.as_file().set_permissions(permissions)?,
+            None => readable_by_all(file.as_file())?,
+        }
         file.persist(path)?;
         Ok(())
     };
