@@ -111,7 +111,7 @@ fn geometry_is_measured_both_ways() {
     assert_eq!((code, error.as_str()), (0, ""));
     assert!(out.lines().count() >= 2 && out.lines().all(|line| line.starts_with("= result \"")), "{out}");
 
-    let moved = vest.replace("\"kind\"", "\"kind\"").replace("(0.1345, 1.01)", "(0.1365, 1.01)");
+    let moved = vest.replace("(0.1345, 1.01)", "(0.1365, 1.01)");
     assert_ne!(moved, vest);
     let b = file(&folder, "b.ron", &moved);
     let (code, out, _) = maquette(&["diff", str(&a), str(&b), "--geometry", "--json"]);

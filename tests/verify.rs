@@ -80,7 +80,7 @@ fn the_first_node_that_differs_in_the_order_of_evaluation_is_named() {
     assert!(code == 1 && said.contains("node \"even\": error: it was there, and is not here"), "{said}");
     let (code, _, said) =
         verify(&SKETCH.replace("\"line\": (\n", "\"hem\": (\n").replace("line.curves", "hem.curves"), &[]);
-    assert!(code == 1 && said.contains("node \"hem\": error: there was no such node there"), "{said}");
+    assert!(code == 1 && said.contains("node \"line\": error: it was there, and is not here"), "{said}");
 }
 
 #[test]

@@ -108,8 +108,10 @@ impl Watch {
         self.complained.recv_timeout(PATIENCE).unwrap()
     }
 
+    /// Puts another graph in place, whole: what is half written would be complained about once more.
     fn write(&self, graph: &str) {
-        std::fs::write(self.folder.path().join("g.ron"), graph).unwrap();
+        let beside = file(&self.folder, "beside.ron", graph);
+        std::fs::rename(beside, self.folder.path().join("g.ron")).unwrap();
     }
 
     /// Waits for the process to end by itself: its exit code.

@@ -72,11 +72,12 @@ fn agrees(arguments: &Arguments, evaluated: &Evaluated, there: &Hashes) -> bool 
         };
         differences.extend(difference.map(|difference| file.about(id, None, &format!("error: {difference}"))));
     }
-    // With fewer outputs asked for, fewer nodes are needed.
+    // With fewer outputs asked for, fewer nodes are needed. What is gone comes first: others differ because of it.
     if arguments.evaluation.outputs.is_empty() {
         let path = file.path.display();
-        let gone = left.keys().map(|name| format!("{path}: node \"{name}\": error: it was there, and is not here"));
-        differences.extend(gone);
+        let gone = there.nodes.iter().filter(|node| left.contains_key(node.name.as_str()));
+        let gone = gone.map(|n| format!("{path}: node \"{}\": error: it was there, and is not here", n.name));
+        differences = gone.chain(differences).collect();
     }
     let against = arguments.against.as_ref().map(|path| path.display().to_string()).unwrap_or_default();
     if let Some(first) = differences.first() {
