@@ -1,5 +1,5 @@
-//! The headless command of Maquette. Exit codes: 0 done, 1 a node failed, 2 the graph or the arguments are wrong,
-//! 3 a result could not be written, or the program broke down.
+//! The headless command of Maquette. Exit codes: 0 done, 1 a node failed, a --fail-if limit was exceeded or what was
+//! compared differs, 2 the graph or the arguments are wrong, 3 a result could not be written, or the program broke down.
 
 use std::process::ExitCode;
 
@@ -8,8 +8,8 @@ use maquette::commands::{self, Ended};
 
 /// Evaluates procedural modelling graphs: sketched curves in, models out.
 ///
-/// Exit codes: 0 done, 1 a node failed, 2 the graph or the arguments are wrong, 3 a result could not be written, or the
-/// program broke down.
+/// Exit codes: 0 done, 1 a node failed, a --fail-if limit was exceeded or what was compared differs, 2 the graph or the
+/// arguments are wrong, 3 a result could not be written, or the program broke down.
 #[derive(Parser)]
 #[command(version, about, long_about, max_term_width = 110)]
 struct Arguments {
@@ -21,6 +21,9 @@ struct Arguments {
 enum Command {
     Run(commands::run::Arguments),
     Check(commands::check::Arguments),
+    Fmt(commands::fmt::Arguments),
+    Diff(commands::diff::Arguments),
+    Verify(commands::verify::Arguments),
     Nodes(commands::nodes::Arguments),
     Render(commands::render::Arguments),
 }
@@ -33,6 +36,9 @@ fn main() -> ExitCode {
     let ended = std::panic::catch_unwind(|| match &arguments.command {
         Command::Run(arguments) => commands::run::run(arguments),
         Command::Check(arguments) => commands::check::check(arguments),
+        Command::Fmt(arguments) => commands::fmt::fmt(arguments),
+        Command::Diff(arguments) => commands::diff::diff(arguments),
+        Command::Verify(arguments) => commands::verify::verify(arguments),
         Command::Nodes(arguments) => commands::nodes::nodes(arguments),
         Command::Render(arguments) => commands::render::render(arguments),
     });

@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use maquette_graph::file::Severity;
-use maquette_graph::{Catalogue, Evaluation, Evaluator, EvaluatorOptions, NodeId, OutcomeState, Request, WireType};
+use maquette_graph::{
+    CancelToken, Catalogue, Evaluation, Evaluator, EvaluatorOptions, NodeId, OutcomeState, Request, WireType,
+};
 
 use super::graph_file::GraphFile;
 use super::progress_bar::Progress;
@@ -43,15 +45,36 @@ pub(super) struct Evaluated {
     pub(super) warnings: Vec<String>,
 }
 
-/// Evaluates; what fails in a node is in [`Evaluated::failures`], what is wrong with graph or arguments is an error.
+/// A graph that is ready to be evaluated.
+pub(super) struct Opened {
+    pub(super) file: GraphFile,
+    /// Its results that were asked for.
+    pub(super) targets: Vec<NodeId>,
+    /// What deserves a look in the file.
+    warnings: Vec<String>,
+}
+
+/// Of which nodes the values are kept for a closer look.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Keep {
+    Results,
+    Everything,
+}
+
+/// An evaluator with the threads asked for.
+pub(super) fn evaluator(arguments: &EvaluationArguments) -> Evaluator {
+    Evaluator::new(&EvaluatorOptions { threads: usize::from(arguments.threads), ..Default::default() })
+}
+
+/// Reads the graph and puts the values given by `--set`; what is wrong with graph or arguments is an error.
 ///
-/// `suits` is asked before anything runs whether the types of the results serve the purpose.
-pub(super) fn evaluate(
+/// `suits` is asked whether the types of the results serve the purpose.
+pub(super) fn open(
     catalogue: &Catalogue,
     arguments: &EvaluationArguments,
     suits: impl Fn(&[WireType]) -> Result<(), Vec<String>>,
-) -> Result<Evaluated, Vec<String>> {
-    let (mut file, mut warnings) = GraphFile::open_sound(catalogue, &arguments.graph)?;
+) -> Result<Opened, Vec<String>> {
+    let (mut file, warnings) = GraphFile::open_sound(catalogue, &arguments.graph)?;
     let wrong: Vec<String> =
         arguments.set.iter().filter_map(|set| overrides::apply(&mut file.loaded.graph, set).err()).collect();
     if !wrong.is_empty() {
@@ -70,36 +93,64 @@ pub(super) fn evaluate(
         .flat_map(|k| k.outputs().iter().map(|o| o.wire).collect::<Vec<_>>())
         .collect();
     suits(&types)?;
-    let progress = Progress::new(!arguments.quiet);
-    let mut evaluator =
-        Evaluator::new(&EvaluatorOptions { threads: usize::from(arguments.threads), ..Default::default() });
-    let request = Request::nodes(&targets).events(&progress).base(file.base());
-    let evaluation = evaluator.evaluate(catalogue, &file.loaded.graph, &request);
-    progress.finish();
-    let mut failures = Vec::new();
-    for (id, outcome) in evaluation.outcomes() {
-        match &outcome.state {
-            OutcomeState::Failed(failure) => {
-                failures.push(file.about(Severity::Error, id, failure.port.as_deref(), &failure.message));
+    Ok(Opened { file, targets, warnings })
+}
+
+/// Evaluates; what fails in a node is in [`Evaluated::failures`], what is wrong with graph or arguments is an error.
+///
+/// `suits` is asked before anything runs whether the types of the results serve the purpose.
+pub(super) fn evaluate(
+    catalogue: &Catalogue,
+    arguments: &EvaluationArguments,
+    suits: impl Fn(&[WireType]) -> Result<(), Vec<String>>,
+) -> Result<Evaluated, Vec<String>> {
+    let opened = open(catalogue, arguments, suits)?;
+    let mut evaluator = evaluator(arguments);
+    Ok(opened.evaluate(catalogue, &mut evaluator, arguments.quiet, Keep::Results, &CancelToken::new()))
+}
+
+impl Opened {
+    /// Evaluates with what the evaluator remembers from earlier times.
+    pub(super) fn evaluate(
+        self,
+        catalogue: &Catalogue,
+        evaluator: &mut Evaluator,
+        quiet: bool,
+        keep: Keep,
+        cancel: &CancelToken,
+    ) -> Evaluated {
+        let Self { file, targets, mut warnings } = self;
+        let graph = &file.loaded.graph;
+        let progress = Progress::new(!quiet);
+        let asked = if keep == Keep::Everything { graph.upstream(&targets) } else { targets.clone() };
+        let request = Request::nodes(&asked).events(&progress).base(file.base()).cancel(cancel);
+        let evaluation = evaluator.evaluate(catalogue, graph, &request);
+        progress.finish();
+        let mut failures = Vec::new();
+        for (id, outcome) in evaluation.outcomes() {
+            match &outcome.state {
+                OutcomeState::Failed(failure) => {
+                    failures.push(file.about(Severity::Error, id, failure.port.as_deref(), &failure.message));
+                }
+                OutcomeState::Waiting(on) if targets.contains(&id) => {
+                    failures.push(file.about(
+                        Severity::Error,
+                        id,
+                        None,
+                        &format!("not made, because \"{}\" failed", on.join("\", \"")),
+                    ));
+                }
+                OutcomeState::Done { report, .. } => {
+                    warnings.extend(report.warnings.iter().map(|w| file.about(Severity::Warning, id, None, w)));
+                }
+                _ => {}
             }
-            OutcomeState::Waiting(on) if targets.contains(&id) => {
-                failures.push(file.about(
-                    Severity::Error,
-                    id,
-                    None,
-                    &format!("not made, because \"{}\" failed", on.join("\", \"")),
-                ));
-            }
-            OutcomeState::Done { report, .. } => {
-                warnings.extend(report.warnings.iter().map(|w| file.about(Severity::Warning, id, None, w)));
-            }
-            _ => {}
         }
+        if !quiet {
+            warnings.iter().for_each(console::remark);
+        }
+        Evaluated { file, targets, evaluation, failures, warnings }
     }
-    if !arguments.quiet {
-        warnings.iter().for_each(console::remark);
-    }
-    Ok(Evaluated { file, targets, evaluation, failures, warnings })
 }
 
 fn targets(file: &GraphFile, wanted: &[String]) -> Result<Vec<NodeId>, Vec<String>> {

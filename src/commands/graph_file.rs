@@ -8,6 +8,8 @@ use maquette_graph::{Catalogue, Literal, NodeId, Source};
 /// A graph with the file it came from.
 pub(super) struct GraphFile {
     pub(super) path: PathBuf,
+    /// What stands in the file.
+    pub(super) text: String,
     pub(super) loaded: Loaded,
 }
 
@@ -25,8 +27,15 @@ impl GraphFile {
             };
             vec![format!("{name}: error: {reason}")]
         })?;
+        Self::from_bytes(catalogue, path, bytes)
+    }
+
+    /// Reads a graph from the bytes of a file.
+    pub(super) fn from_bytes(catalogue: &Catalogue, path: &Path, bytes: Vec<u8>) -> Result<Self, Refused> {
+        let name = path.display();
         let loaded = file::from_bytes(catalogue, &bytes).map_err(|error| vec![format!("{name}:{error}")])?;
-        Ok(Self { path: path.to_owned(), loaded })
+        let text = String::from_utf8(bytes).map_err(|_| vec![format!("{name}: error: the file is not UTF-8 text")])?;
+        Ok(Self { path: path.to_owned(), text, loaded })
     }
 
     /// Reads a graph that is to be evaluated, with its warnings; refuses it where something is wrong.
@@ -72,6 +81,18 @@ impl GraphFile {
             }
         }
         missing
+    }
+
+    /// Files that the graph names: the node, its input, the path.
+    pub(super) fn files(&self) -> impl Iterator<Item = (NodeId, &str, PathBuf)> {
+        self.loaded.graph.nodes().flat_map(move |(id, node)| {
+            node.sources().filter_map(move |(input, source)| match source {
+                Source::Literal { literal: Literal::File(path), .. } if !path.is_empty() => {
+                    Some((id, input, self.base().join(path)))
+                }
+                _ => None,
+            })
+        })
     }
 
     /// Files that the graph names and that are not there, and files and sketches that it leaves empty.

@@ -1,15 +1,24 @@
 //! The commands, one file each, and what they share.
 
 pub mod check;
+mod comments;
+mod consistency;
 pub mod console;
+pub mod diff;
 mod evaluation;
+mod evaluation_order;
+mod fail_if;
+pub mod fmt;
 mod graph_file;
+mod hashes;
 pub mod nodes;
 mod overrides;
 mod progress_bar;
 pub mod render;
 mod results;
 pub mod run;
+pub mod verify;
+mod watch;
 mod write;
 
 /// How a command ended; the number is the exit code.
@@ -18,8 +27,8 @@ mod write;
 pub enum Ended {
     /// Everything was done.
     Done = 0,
-    /// A node failed.
-    NodeFailed = 1,
+    /// A node failed, a limit was exceeded, or what was compared differs.
+    Failed = 1,
     /// The graph or the arguments are wrong.
     Wrong = 2,
     /// A result could not be written.

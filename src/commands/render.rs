@@ -64,7 +64,7 @@ pub fn render(arguments: &Arguments) -> Ended {
     let failed = !evaluated.failures.is_empty();
     if failed && !arguments.evaluation.keep_going {
         console::remark("nothing was drawn, because a node failed; --keep-going draws what succeeded");
-        return Ended::NodeFailed;
+        return Ended::Failed;
     }
     let (width, height) = arguments.size;
     let view = match arguments.view {
@@ -81,7 +81,7 @@ pub fn render(arguments: &Arguments) -> Ended {
         Ok(picture) => picture,
         Err(error) => {
             console::error(error.to_string());
-            return if failed { Ended::NodeFailed } else { Ended::Wrong };
+            return if failed { Ended::Failed } else { Ended::Wrong };
         }
     };
     let written = picture
@@ -97,7 +97,7 @@ pub fn render(arguments: &Arguments) -> Ended {
             if !arguments.evaluation.quiet {
                 console::say(format!("wrote {} ({width}x{height})", arguments.file.display()));
             }
-            if failed { Ended::NodeFailed } else { Ended::Done }
+            if failed { Ended::Failed } else { Ended::Done }
         }
     }
 }

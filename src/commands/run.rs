@@ -1,17 +1,19 @@
 //! `maquette run`: evaluates a graph and writes its results.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use glam::DVec3;
 use maquette_geometry::file_format::FileFormat;
 use maquette_geometry::mesh::{Mesh, check};
 use maquette_geometry::scene::Scene;
-use maquette_graph::{Outcome, OutcomeState};
+use maquette_graph::{CancelToken, Catalogue, Evaluator, Outcome, OutcomeState};
 use serde_json::{Value as Json, json};
 
-use super::evaluation::{Evaluated, EvaluationArguments, evaluate};
-use super::{Ended, console, results, write};
+use super::evaluation::{Evaluated, EvaluationArguments, Keep, Opened, evaluator, open};
+use super::fail_if::{self, Limit};
+use super::hashes::{self, Hashes};
+use super::{Ended, console, results, watch, write};
 
 /// Evaluate a graph and write its results.
 #[derive(clap::Args)]
@@ -27,61 +29,163 @@ pub struct Arguments {
     /// Say what the nodes noted and measured.
     #[arg(long)]
     report: bool,
+    /// Fail where a figure that a node measured is beyond this limit: 'NODE.figure > 0.01', 'figure <= 3' for any node;
+    /// may be given several times. --report lists the figures.
+    #[arg(long, value_name = "LIMIT")]
+    fail_if: Vec<String>,
+    /// Write the content hash of each node's outputs to this file (.ron), or to stdout; see maquette verify.
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
+    hashes: Option<PathBuf>,
+    /// Evaluate again whenever the graph or a file it names changes, until Ctrl-C, SIGTERM, or the end of stdin where
+    /// that is a terminal or a pipe. Only what changed runs again; a graph that is wrong for the moment is waited for.
+    #[arg(long)]
+    pub(super) watch: bool,
 }
+
+/// How many names of nodes fit a line.
+const NAMES: usize = 8;
 
 /// Carries out the command.
 pub fn run(arguments: &Arguments) -> Ended {
-    let refuse = |messages: Vec<String>| {
-        messages.iter().for_each(console::remark);
-        if arguments.json {
-            let graph = arguments.evaluation.graph.display().to_string();
-            console::say(json!({ "graph": graph, "ok": false, "errors": messages }).to_string());
+    let mut runner = match Runner::new(arguments) {
+        Ok(runner) => runner,
+        Err(messages) => return refuse(arguments, &messages),
+    };
+    if arguments.watch {
+        return watch::watch(&mut runner, &arguments.evaluation.graph);
+    }
+    match runner.open() {
+        Ok(opened) => runner.pass(opened),
+        Err(messages) => refuse(arguments, &messages),
+    }
+}
+
+/// Says what is wrong with graph or arguments.
+fn refuse(arguments: &Arguments, messages: &[String]) -> Ended {
+    messages.iter().for_each(console::remark);
+    if arguments.json {
+        let graph = arguments.evaluation.graph.display().to_string();
+        console::say(json!({ "graph": graph, "ok": false, "errors": messages }).to_string());
+    }
+    Ended::Wrong
+}
+
+/// What one evaluation leaves for the next.
+pub(super) struct Runner<'a> {
+    pub(super) arguments: &'a Arguments,
+    catalogue: Catalogue,
+    formats: Vec<FileFormat>,
+    limits: Vec<Limit>,
+    evaluator: Evaluator,
+    pub(super) cancel: CancelToken,
+}
+
+impl<'a> Runner<'a> {
+    /// Reads the arguments; all that is wrong with them is an error.
+    fn new(arguments: &'a Arguments) -> Result<Self, Vec<String>> {
+        let catalogue = maquette_nodes::catalogue().map_err(|error| vec![format!("error: {error}")])?;
+        let mut wrong = Vec::new();
+        let formats = arguments.files.iter().map(|path| write::format(path));
+        let formats = formats.filter_map(|format| format.map_err(|e| wrong.push(format!("error: {e}"))).ok()).collect();
+        let limits = arguments.fail_if.iter().map(|text| Limit::parse(text));
+        let limits = limits.filter_map(|limit| limit.map_err(|e| wrong.push(format!("error: {e}"))).ok()).collect();
+        if arguments.json && arguments.hashes.as_deref() == Some(Path::new("-")) {
+            wrong.push("error: --json and --hashes both write to stdout: give --hashes a file".to_owned());
         }
-        Ended::Wrong
-    };
-    let catalogue = match maquette_nodes::catalogue() {
-        Ok(catalogue) => catalogue,
-        Err(error) => return refuse(vec![format!("error: {error}")]),
-    };
-    let formats: Result<Vec<FileFormat>, Vec<String>> = arguments
-        .files
-        .iter()
-        .map(|path| write::format(path).map_err(|error| vec![format!("error: {error}")]))
-        .collect();
-    let evaluated = formats.and_then(|formats| {
-        let files: Vec<_> = arguments.files.iter().map(PathBuf::as_path).zip(formats.iter().copied()).collect();
-        let evaluated = evaluate(&catalogue, &arguments.evaluation, |types| write::suits(&files, types))?;
-        Ok((formats, evaluated))
-    });
-    let (formats, evaluated) = match evaluated {
-        Ok(evaluated) => evaluated,
-        Err(messages) => return refuse(messages),
-    };
-    evaluated.failures.iter().for_each(console::remark);
-    let scene = results::scene(&evaluated.evaluation, &evaluated.targets);
-    let mut written = Vec::new();
-    let mut errors = evaluated.failures.clone();
-    let mut ended = if evaluated.failures.is_empty() { Ended::Done } else { Ended::NodeFailed };
-    if ended == Ended::Done || arguments.evaluation.keep_going {
-        for (path, format) in arguments.files.iter().zip(formats) {
-            match write::scene(path, format, &scene) {
+        wrong.extend(arguments.hashes.as_deref().and_then(|path| hashes::check_place(path).err()));
+        if !wrong.is_empty() {
+            return Err(wrong);
+        }
+        let evaluator = evaluator(&arguments.evaluation);
+        Ok(Self { arguments, catalogue, formats, limits, evaluator, cancel: CancelToken::new() })
+    }
+
+    /// Reads the graph.
+    pub(super) fn open(&self) -> Result<Opened, Vec<String>> {
+        let files = self.arguments.files.iter().map(PathBuf::as_path);
+        let files: Vec<_> = files.zip(self.formats.iter().copied()).collect();
+        open(&self.catalogue, &self.arguments.evaluation, |types| write::suits(&files, types))
+    }
+
+    /// Says what is wrong with the graph.
+    pub(super) fn refuse(&self, messages: &[String]) -> Ended {
+        refuse(self.arguments, messages)
+    }
+
+    /// The files that are written.
+    pub(super) fn written_files(&self) -> impl Iterator<Item = &Path> {
+        self.arguments.files.iter().chain(&self.arguments.hashes).map(PathBuf::as_path)
+    }
+
+    /// Evaluates once, writes what is to be written, and says so.
+    pub(super) fn pass(&mut self, opened: Opened) -> Ended {
+        let arguments = self.arguments;
+        let keep = if arguments.hashes.is_some() { Keep::Everything } else { Keep::Results };
+        let quiet = arguments.evaluation.quiet;
+        let mut evaluated = opened.evaluate(&self.catalogue, &mut self.evaluator, quiet, keep, &self.cancel);
+        if self.cancel.is_cancelled() {
+            return Ended::Done;
+        }
+        let verdict = fail_if::judge(&self.limits, &evaluated.evaluation);
+        if !verdict.unknown.is_empty() {
+            return self.refuse(&verdict.unknown);
+        }
+        let path = evaluated.file.path.display();
+        let exceeded: Vec<String> = verdict.exceeded.iter().map(|message| format!("{path}: {message}")).collect();
+        evaluated.failures.extend(exceeded);
+        evaluated.failures.iter().for_each(console::remark);
+        let scene = results::scene(&evaluated.evaluation, &evaluated.targets);
+        let mut written = Vec::new();
+        let mut errors = evaluated.failures.clone();
+        let mut ended = if evaluated.failures.is_empty() { Ended::Done } else { Ended::Failed };
+        if ended == Ended::Done || arguments.evaluation.keep_going {
+            let mut keep = |result: Result<Vec<(PathBuf, usize)>, String>| match result {
                 Ok(files) => written.extend(files),
                 Err(error) => {
                     console::error(&error);
                     errors.push(format!("error: {error}"));
                     ended = if ended == Ended::Done { Ended::NotWritten } else { ended };
                 }
+            };
+            for (path, format) in arguments.files.iter().zip(&self.formats) {
+                keep(write::scene(path, *format, &scene));
             }
+            if let Some(path) = arguments.hashes.as_deref().filter(|path| *path != Path::new("-")) {
+                let text = Hashes::of(&evaluated).to_text();
+                keep(write::whole(path, text.as_bytes()).map(|()| vec![(path.to_owned(), text.len())]));
+            }
+        } else if self.written_files().next().is_some() {
+            console::remark(
+                "nothing was written, because a node failed or a limit was exceeded; --keep-going writes what succeeded",
+            );
         }
-    } else if !arguments.files.is_empty() {
-        console::remark("nothing was written, because a node failed; --keep-going writes what succeeded");
+        if arguments.json {
+            console::say(as_json(arguments, &evaluated, &scene, &written, &errors).to_string());
+        } else if arguments.hashes.as_deref() == Some(Path::new("-")) {
+            if ended == Ended::Done || arguments.evaluation.keep_going {
+                console::say(Hashes::of(&evaluated).to_text().trim_end());
+            }
+        } else if arguments.watch && !arguments.report && !quiet {
+            console::say(as_line(&evaluated, &written, ended));
+        } else if !quiet {
+            as_text(arguments, &evaluated, &scene, &written);
+        }
+        ended
     }
-    if arguments.json {
-        console::say(as_json(arguments, &evaluated, &scene, &written, &errors).to_string());
-    } else if !arguments.evaluation.quiet {
-        as_text(arguments, &evaluated, &scene, &written);
-    }
-    ended
+}
+
+/// What was done, on one line.
+fn as_line(evaluated: &Evaluated, written: &[(PathBuf, usize)], ended: Ended) -> String {
+    let evaluation = &evaluated.evaluation;
+    let ran: Vec<&str> = evaluation.outcomes().filter(|(_, o)| o.ran).map(|(_, o)| o.name.as_str()).collect();
+    let more = if ran.len() > NAMES { format!(", {} more", ran.len() - NAMES) } else { String::new() };
+    let names = ran.iter().take(NAMES).copied().collect::<Vec<_>>().join(", ");
+    let names = if ran.is_empty() { String::new() } else { format!(" ({names}{more})") };
+    let files: String = written.iter().map(|(path, _)| format!(", wrote {}", path.display())).collect();
+    let path = evaluated.file.path.display();
+    let (hits, time) = (evaluation.hit_count(), milliseconds(evaluation.duration));
+    let failed = if ended == Ended::Done { "" } else { ", failed" };
+    format!("{path}: ran {}{names}, {hits} hits, {time}{files}{failed}", ran.len())
 }
 
 fn milliseconds(duration: Duration) -> String {

@@ -64,6 +64,15 @@ pub(super) fn scene(path: &Path, format: FileFormat, scene: &Scene) -> Result<Ve
     files.into_iter().map(|(path, bytes)| whole(&path, &bytes).map(|()| (path, bytes.len()))).collect()
 }
 
+/// Replaces a file that is there. One that is protected against writing is left as it is.
+pub(super) fn replaced(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    let there = std::fs::metadata(path).map_err(|error| format!("{}: it can't be written: {error}", path.display()))?;
+    if there.permissions().readonly() {
+        return Err(format!("{}: it can't be written: it is protected against writing", path.display()));
+    }
+    whole(path, bytes)
+}
+
 /// Writes a file beside, then puts it in place, so that nobody ever sees half of it. A link keeps leading to the file
 /// it leads to, and a file that was there keeps its permissions.
 pub(super) fn whole(path: &Path, bytes: &[u8]) -> Result<(), String> {

@@ -51,6 +51,7 @@ mod port;
 mod ports;
 mod report;
 mod topology;
+mod unknown_fields;
 mod value;
 
 pub use catalogue::{Catalogue, CatalogueError};
