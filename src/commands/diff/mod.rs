@@ -41,7 +41,7 @@ pub struct Arguments {
     /// Relative paths within both graphs start at this folder, not at their own; for a copy that lies elsewhere.
     #[arg(long, value_name = "FOLDER")]
     base: Option<PathBuf>,
-    /// For git's diff.<driver>.command: the arguments that git gives, PATH OLD-FILE OLD-HEX OLD-MODE NEW-FILE NEW-HEX
+    /// For git's diff.NAME.command: the arguments that git gives, PATH OLD-FILE OLD-HEX OLD-MODE NEW-FILE NEW-HEX
     /// NEW-MODE. Always exits with 0, because git takes all else for a breakdown.
     #[arg(long, num_args = 1..=9, value_name = "ARGUMENTS", allow_hyphen_values = true)]
     git: Option<Vec<String>>,
