@@ -13,3 +13,4 @@ pub mod mesh;
 pub mod scene;
 pub mod sections;
 pub mod surface;
+pub mod trigonometric;
