@@ -48,6 +48,11 @@ impl Series {
         Ok(Self { coefficients })
     }
 
+    /// A single point: a series without harmonics.
+    pub(super) fn point(point: DVec3) -> Self {
+        Self { coefficients: vec![point] }
+    }
+
     /// The coefficients: constant, cos v, sin v, cos 2v, sin 2v, ..
     pub fn coefficients(&self) -> &[DVec3] {
         &self.coefficients
