@@ -14,6 +14,9 @@ use nalgebra::DMatrix;
 /// Harmonics factored at first: the greater of the two with which the search begins.
 const PROBED: usize = 10;
 
+/// Share of its error before one harmonic more, above which that harmonic hardly helped a segment.
+const STALLED: f64 = 0.7;
+
 /// A curve with the angles of its samples.
 pub(super) struct Prepared {
     pub(super) samples: Samples,
@@ -184,7 +187,7 @@ impl<'a> Section<'a> {
     }
 
     /// All segments in one problem. The search starts from the fewest harmonics and raises those of every segment that
-    /// does not meet the tolerances, then lowers each while all still do.
+    /// does not meet the tolerances by itself (and of its neighbours, where that hardly helps), then lowers each while all still do.
     fn together(&self, goal: &Goal) -> Result<Outcome, SeriesError> {
         let problem = self.problem();
         let solved = |harmonics: &[usize]| {
@@ -194,7 +197,7 @@ impl<'a> Section<'a> {
         let most = match goal {
             Goal::Given(harmonics) => {
                 let solved = solved(harmonics)?;
-                let met = self.met(&solved).iter().all(|met| *met);
+                let met = self.met(&solved);
                 return Ok(Outcome { solved, harmonics: harmonics.clone(), met });
             }
             Goal::Smallest { most } => *most,
@@ -202,26 +205,36 @@ impl<'a> Section<'a> {
         let mut harmonics: Vec<usize> =
             (0..self.layout.count()).map(|s| self.layout.fewest_harmonics(s).max(2).min(self.most(s, most))).collect();
         let mut best = solved(&harmonics)?;
+        let mut before = vec![f64::INFINITY; self.layout.count()];
         loop {
-            let mut raised = false;
-            for (segment, met) in self.met(&best).into_iter().enumerate() {
-                if !met && harmonics[segment] < self.most(segment, most) {
-                    harmonics[segment] += 1;
-                    raised = true;
+            let shares = self.shares(&best);
+            let mut raised = vec![false; shares.len()];
+            for (segment, share) in shares.iter().enumerate().filter(|(_, share)| **share > 1.0) {
+                raised[segment] = true;
+                // What more harmonics of its own hardly help is held off by its neighbours, through the joints.
+                if *share > STALLED * before[segment] {
+                    let count = shares.len();
+                    raised[(segment + 1) % count] |= self.layout.closed || segment + 1 < count;
+                    raised[(segment + count - 1) % count] |= self.layout.closed || segment > 0;
                 }
             }
-            if !raised {
+            let mut more = harmonics.clone();
+            for (segment, harmonics) in more.iter_mut().enumerate().filter(|(segment, _)| raised[*segment]) {
+                *harmonics = (*harmonics + 1).min(self.most(segment, most));
+            }
+            if more == harmonics {
                 break;
             }
+            (harmonics, before) = (more, shares);
             best = solved(&harmonics)?;
         }
-        let met = self.met(&best).into_iter().all(|met| met);
+        let met = self.met(&best);
         for segment in 0..self.layout.count() {
             while met && harmonics[segment] > self.layout.fewest_harmonics(segment) {
                 let mut fewer = harmonics.clone();
                 fewer[segment] -= 1;
                 let tried = solved(&fewer)?;
-                if !self.met(&tried).into_iter().all(|met| met) {
+                if !self.met(&tried) {
                     break;
                 }
                 (harmonics, best) = (fewer, tried);
@@ -230,12 +243,18 @@ impl<'a> Section<'a> {
         Ok(Outcome { solved: best, harmonics, met })
     }
 
-    /// Whether each segment meets the tolerances by itself.
-    fn met(&self, solved: &Solved) -> Vec<bool> {
-        let within = |samples: &Vec<(usize, f64)>| {
-            self.prepared.tolerances.met_by(errors(samples.iter().map(|(i, _)| solved.distances[*i])))
+    /// Errors of each segment by itself, as the larger share of its tolerance: at most 1 where it meets both.
+    fn shares(&self, solved: &Solved) -> Vec<f64> {
+        let tolerances = self.prepared.tolerances;
+        let share = |samples: &Vec<(usize, f64)>| {
+            let errors = errors(samples.iter().map(|(i, _)| solved.distances[*i]));
+            (errors.mean / tolerances.mean).max(errors.maximum / tolerances.maximum)
         };
-        self.samples.iter().map(within).collect()
+        self.samples.iter().map(share).collect()
+    }
+
+    fn met(&self, solved: &Solved) -> bool {
+        self.shares(solved).into_iter().all(|share| share <= 1.0)
     }
 
     /// The first segment freely, each next tied to the one before, the last of a closed section to the first as well.
@@ -266,7 +285,7 @@ impl<'a> Section<'a> {
             harmonics.push(j);
         }
         let solved = problem.measured(segments);
-        let met = self.met(&solved).into_iter().all(|met| met);
+        let met = self.met(&solved);
         Ok(Outcome { solved, harmonics, met })
     }
 }

@@ -310,8 +310,9 @@ fn together_is_never_worse_than_in_turn() {
 
 #[test]
 fn a_teardrop_is_one_segment_with_a_corner() {
-    let points: Vec<_> =
-        (0..160).map(|i| PI * f64::from(i) / 160.0).map(|t| ((2.0 * t).sin() * 0.4 * t.sin(), t.sin())).collect();
+    // From a tip of 60 degrees along tangents around a circle.
+    let arc = (0..=80).map(|i| PI * (f64::from(i) / 60.0 - 1.0 / 6.0)).map(|t| (t.cos(), t.sin()));
+    let points: Vec<_> = [(0.0, -2.0)].into_iter().chain(arc).collect();
     let drop = closed(&points);
     let frame = fit(&drop, &FitOptions::default()).unwrap().section.frame().to_owned();
     let corner = Joint { angle: frame.angle(drop.points()[0]), continuity: Continuity::C0 };
