@@ -79,14 +79,12 @@ impl Joints {
             let angles = corners.into_iter().map(|i| section.angles[i]);
             found.extend(angles.map(|angle| if closed { angle.rem_euclid(TAU) } else { angle }));
         }
-        let mut angles = clustered(found, closed);
-        if let [only] = angles[..]
-            && closed
-        {
-            angles.push((only + PI).rem_euclid(TAU));
-            angles.sort_by(f64::total_cmp);
+        let corners = clustered(found, closed);
+        let joints = Self::smooth_but_at_corners(corners, stack, closed, corner, continuity);
+        match joints.angles[..] {
+            [only] if closed => joints.with((only + PI).rem_euclid(TAU), continuity),
+            _ => joints,
         }
-        Self::smooth_but_at_corners(angles, stack, closed, corner, continuity)
     }
 
     fn smooth_but_at_corners(
