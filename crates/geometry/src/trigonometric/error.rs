@@ -26,6 +26,18 @@ pub enum FitError {
         /// Diagonal of its box, metres.
         size: f64,
     },
+    /// A curve so far from the origin that its coordinates hold too few digits of its shape.
+    #[error(
+        "curve \"{curve}\" is {size} m across and {distance} m from the origin, too far to tell its points apart: move it"
+    )]
+    FarOut {
+        /// Name of the curve.
+        curve: String,
+        /// Diagonal of its box, metres.
+        size: f64,
+        /// Largest coordinate, metres.
+        distance: f64,
+    },
     /// A number of harmonics out of range.
     #[error("{harmonics} harmonics asked for: a series needs 1 to 100")]
     Harmonics {

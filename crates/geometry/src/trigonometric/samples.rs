@@ -18,6 +18,9 @@ const MOST: usize = 512;
 /// Slowest growth of the polar angle, as a share of its mean pace, at which a curve is clearly star-shaped.
 const PACE: f64 = 0.25;
 
+/// Size of a curve as a share of its coordinates, below which they hold too few digits of it.
+const FAR_OUT: f64 = 1e-9;
+
 /// A curve as it is fitted.
 pub(super) struct Samples {
     pub(super) name: String,
@@ -63,6 +66,10 @@ impl Samples {
         let length = lengths[lengths.len() - 1];
         if !(diagonal * diagonal).is_normal() || !length.is_normal() || !origin.is_finite() {
             return Err(FitError::Size { curve: name, size: diagonal });
+        }
+        let distance = points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+        if diagonal < FAR_OUT * distance {
+            return Err(FitError::FarOut { curve: name, size: diagonal, distance });
         }
         Ok(Self { name, points, closed, frame, diagonal, lengths, reversed: false })
     }
