@@ -136,7 +136,9 @@ pub enum FitError {
         needed: usize,
     },
     /// Joints that cannot be met together.
-    #[error("curve \"{curve}\", segment {segment}: the joints at its ends contradict one another: raise the harmonics")]
+    #[error(
+        "curve \"{curve}\", segment {segment}: the joints at its ends cannot both be met: move them apart, or raise the harmonics"
+    )]
     Contradiction {
         /// Name of the curve.
         curve: String,

@@ -87,7 +87,8 @@ fn free(a: DMatrix<f64>, f: &DMatrix<f64>) -> DMatrix<f64> {
 /// normalised and an orthogonal factorization with pivots splits the space into what they fix and what is free, which
 /// holds for every angle of a joint and for constraints that repeat one another.
 ///
-/// None where the constraints contradict one another.
+/// None where the constraints contradict one another, or so nearly repeat one another that they can't be met to 1e-9 of
+/// the larger of 1 and `d`.
 pub(super) fn constrained(
     a: &DMatrix<f64>,
     f: &DMatrix<f64>,
@@ -114,8 +115,7 @@ pub(super) fn constrained(
     factored.p().permute_rows(&mut pivoted);
     let fixed = triangle.view((0, 0), (rank, rank)).tr_solve_upper_triangular(&pivoted.rows(0, rank))?;
     let particular = rotation.rows(0, rank).tr_mul(&fixed);
-    let scale = d.amax().max(particular.amax());
-    if (&b * &particular - &d).amax() > MET * scale {
+    if (&b * &particular - &d).amax() > MET * d.amax().max(1.0) {
         return None;
     }
     let null = rotation.rows(rank, unknowns - rank);

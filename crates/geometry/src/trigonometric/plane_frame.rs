@@ -110,7 +110,7 @@ pub(super) fn normal(curve: &Curve, mean: DVec3) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::FRAC_PI_3;
+    use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_3};
 
     /// Reference value V06.
     #[test]
@@ -119,7 +119,7 @@ mod tests {
         let frame = PlaneFrame::of(&curve);
         assert!(frame.origin.distance(DVec3::splat(1.0 / 3.0)) < 1e-15);
         assert!(frame.e1.distance(DVec3::new(0.8164965809277, -0.4082482904639, -0.4082482904639)) < 1e-12);
-        assert!(frame.e2.distance(DVec3::new(0.0, 0.7071067811865, -0.7071067811865)) < 1e-12);
+        assert!(frame.e2.distance(DVec3::new(0.0, FRAC_1_SQRT_2, -FRAC_1_SQRT_2)) < 1e-12);
         assert!(frame.normal.distance(DVec3::splat(0.5773502691896)) < 1e-12);
         assert!(frame.flatness(curve.points()) < 1e-15);
     }

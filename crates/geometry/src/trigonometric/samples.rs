@@ -245,16 +245,8 @@ mod tests {
         let octagon =
             [(2.0, 0.0), (1.5, 1.0), (0.0, 1.5), (-1.5, 1.0), (-2.0, 0.0), (-1.5, -1.0), (0.0, -1.5), (1.5, -1.0)];
         let polar = samples(&octagon, true, Sampling::AsGiven).polar();
-        let wanted = [
-            0.0,
-            0.5880026035476,
-            1.570796326795,
-            2.553590050042,
-            3.14159265359,
-            3.729595257137,
-            4.712388980385,
-            5.695182703632,
-        ];
+        let wanted =
+            [0.0, 0.5880026035476, PI / 2.0, 2.553590050042, PI, 3.729595257137, 4.712388980385, 5.695182703632];
         assert!(polar.clear && polar.angles.iter().zip(wanted).all(|(a, w)| (a - w).abs() < 1e-12));
         let clockwise: Vec<_> = octagon.iter().rev().copied().collect();
         assert!(samples(&clockwise, true, Sampling::AsGiven).polar().clear, "it runs about its own normal");
