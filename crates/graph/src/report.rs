@@ -27,4 +27,20 @@ impl Report {
     pub fn is_empty(&self) -> bool {
         self.notes.is_empty() && self.warnings.is_empty() && self.figures.is_empty()
     }
+
+    /// Adds what another says.
+    pub(crate) fn append(&mut self, mut other: Self) {
+        self.notes.append(&mut other.notes);
+        self.warnings.append(&mut other.warnings);
+        self.figures.append(&mut other.figures);
+    }
+
+    /// Takes over what a node within a body said, with the way to that node before it.
+    pub(crate) fn absorb(&mut self, inside: &str, other: &Self) {
+        self.notes.extend(other.notes.iter().map(|note| format!("{inside}: {note}")));
+        self.warnings.extend(other.warnings.iter().map(|warning| format!("{inside}: {warning}")));
+        let figures = other.figures.iter();
+        self.figures
+            .extend(figures.map(|figure| Figure { name: format!("{inside}/{}", figure.name), ..figure.clone() }));
+    }
 }

@@ -217,6 +217,10 @@ fn assert_sound(rig: &Rig) {
                         assert!(range.contains(number), "{number} at {input} of {}", node.name());
                     }
                 }
+                Source::Parameter(name) => {
+                    let given = graph.parameter(name).unwrap().wire();
+                    assert!(node.kind().is_none() || rig.catalogue.fits(given, spec.unwrap().wire));
+                }
                 Source::Unread(_) => {}
             }
         }
