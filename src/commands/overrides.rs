@@ -1,4 +1,4 @@
-//! `--set NODE.PORT=VALUE`: values from the command line, read by the type of their port.
+//! `--set NODE.PORT=VALUE`, `--set PARAMETER=VALUE`: values from the command line, read by the type of their port.
 
 use maquette_graph::file::parse_literal;
 use maquette_graph::{Graph, Literal, LiteralKind};
@@ -8,9 +8,12 @@ use maquette_graph::{Graph, Literal, LiteralKind};
 /// Texts, choices and files are written bare, vectors and colours as numbers separated by commas; anything may also be
 /// written as in a graph file. A relative path starts at the current folder.
 pub(super) fn apply(graph: &mut Graph, assignment: &str) -> Result<(), String> {
+    const HOW: &str = "write it as NODE.PORT=VALUE, or PARAMETER=VALUE";
     let fail = |reason: String| format!("--set {assignment}: {reason}");
-    let (address, value) = assignment.split_once('=').ok_or_else(|| fail("write it as NODE.PORT=VALUE".to_owned()))?;
-    let (name, port) = address.rsplit_once('.').ok_or_else(|| fail("write it as NODE.PORT=VALUE".to_owned()))?;
+    let (address, value) = assignment.split_once('=').ok_or_else(|| fail(HOW.to_owned()))?;
+    let Some((name, port)) = address.rsplit_once('.') else {
+        return parameter(graph, address, value).map_err(fail);
+    };
     let node = graph.find(name).ok_or_else(|| {
         let hint = graph.suggest(name).map(|s| format!("; did you mean \"{s}\"?")).unwrap_or_default();
         fail(format!("no node is named \"{name}\"{hint}"))
@@ -24,6 +27,22 @@ pub(super) fn apply(graph: &mut Graph, assignment: &str) -> Result<(), String> {
         .ok_or_else(|| fail(format!("the input takes {} from a link; a value can't be given", spec.wire)))?;
     let literal = literal(wanted, value).map_err(fail)?;
     graph.set(node, port, literal).map_err(|error| fail(error.to_string()))
+}
+
+/// Puts a value at a parameter of the graph.
+fn parameter(graph: &mut Graph, name: &str, value: &str) -> Result<(), String> {
+    let Some(found) = graph.parameter(name) else {
+        let known: Vec<_> = graph.parameters().map(|parameter| parameter.name()).collect();
+        return Err(match graph.suggest_parameter(name) {
+            Some(suggestion) => format!("the graph has no parameter \"{name}\"; did you mean \"{suggestion}\"?"),
+            None if known.is_empty() => format!("the graph has no parameters; give NODE.PORT=VALUE in place of {name}"),
+            None => format!("the graph has no parameter \"{name}\"; it has {}", known.join(", ")),
+        });
+    };
+    let wanted = LiteralKind::of_wire(found.wire())
+        .ok_or_else(|| format!("the parameter takes {} from outside; a value can't be given", found.wire()))?;
+    let literal = literal(wanted, value)?;
+    graph.set_parameter(name, literal).map_err(|error| error.to_string())
 }
 
 fn literal(wanted: LiteralKind, value: &str) -> Result<Literal, String> {

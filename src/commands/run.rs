@@ -12,6 +12,7 @@ use serde_json::{Value as Json, json};
 
 use super::evaluation::{Evaluated, EvaluationArguments, Keep, Opened, evaluator, open};
 use super::fail_if::{self, Limit};
+use super::graph_file::GraphFile;
 use super::hashes::{self, Hashes};
 use super::{Ended, console, results, watch, write};
 
@@ -105,6 +106,12 @@ impl<'a> Runner<'a> {
         let files = self.arguments.files.iter().map(PathBuf::as_path);
         let files: Vec<_> = files.zip(self.formats.iter().copied()).collect();
         open(&self.catalogue, &self.arguments.evaluation, |types| write::suits(&files, types))
+    }
+
+    /// The files that the graph is made of and names, whatever is wrong with it.
+    pub(super) fn files(&self) -> Vec<PathBuf> {
+        let file = GraphFile::open(&self.catalogue, &self.arguments.evaluation.graph);
+        file.map(|file| file.files()).unwrap_or_default()
     }
 
     /// Says what is wrong with the graph.
