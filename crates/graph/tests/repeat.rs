@@ -167,13 +167,13 @@ fn what_can_not_be_repeated_is_said_at_its_place() {
     assert_eq!(
         one("note: \"\""),
         [
-            "2:36: error: node \"r\": the output \"text\" gives text each time, which can't be collected: leave it out of the \
+            "2:39: error: node \"r\": the output \"text\" gives text each time, which can't be collected: leave it out of the \
              body's outputs, or feed it back"
         ]
     );
     assert_eq!(
         one("each: \"y\""),
-        ["2:36: error: node \"r\": \"each\" names the parameter \"y\", which the body does not have; it has x, text"]
+        ["2:40: error: node \"r\": \"each\" names the parameter \"y\", which the body does not have; it has x, text"]
     );
     assert!(one("each: \"text\"")[0].contains("\"each\" takes lists apart, and there is no list of text"));
     assert!(one("feed_back: { \"text\": \"sum\" }")[0].contains("gives number, and the parameter \"text\" takes text"));

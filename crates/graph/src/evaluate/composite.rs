@@ -246,15 +246,17 @@ impl<'a> Runner<'a> {
             // Only what the last time gave is wanted.
             gave.values = Ok(Vec::new());
         }
+        if gave.values.is_ok() {
+            times.ended += 1;
+            if times.total > 1 {
+                #[expect(clippy::cast_precision_loss, reason = "a list of so many items would not fit into memory")]
+                let done = times.ended as f64 / times.total as f64;
+                // Before it counts as ended, so that the end of the step comes behind.
+                composite.run.place.emit(self.events, composite.step().node, EventKind::Progress(done));
+            }
+        }
         times.gave[*index] = Some(gave);
         times.fed = fed;
-        times.ended += 1;
-        if times.total > 1 {
-            #[expect(clippy::cast_precision_loss, reason = "a list of so many items would not fit into memory")]
-            let done = times.ended as f64 / times.total as f64;
-            // Before it counts as ended, so that the end of the step comes behind.
-            composite.run.place.emit(self.events, composite.step().node, EventKind::Progress(done));
-        }
         times.running -= 1;
         drop(times);
         self.advance(composite, led);
