@@ -202,6 +202,8 @@ impl Moving<'_> {
         let inner = self.parameter(key, name, "graph", |name| {
             let mut parameter = found;
             name.clone_into(&mut parameter.spec.name);
+            // Where the parameter holds nothing, inputs are at their defaults; so it shall be within.
+            parameter.spec.optional |= parameter.value().is_none();
             parameter
         })?;
         outer.inputs.insert(inner.clone(), Source::Parameter(name.to_owned()));
