@@ -45,7 +45,7 @@ pub enum CatalogueError {
     DuplicatePort {
         /// The kind.
         kind: String,
-        /// Inputs or outputs.
+        /// Inputs, outputs, or figures and tables.
         what: &'static str,
         /// The name.
         port: String,
@@ -105,7 +105,8 @@ impl Catalogue {
         }
         let inputs: Vec<_> = kind.inputs().iter().map(|i| &i.name).collect();
         let outputs: Vec<_> = kind.outputs().iter().map(|o| &o.name).collect();
-        for (what, ports) in [("inputs", inputs), ("outputs", outputs)] {
+        let measured = kind.figures().iter().map(|f| &f.name).chain(kind.tables().iter().map(|t| &t.name)).collect();
+        for (what, ports) in [("inputs", inputs), ("outputs", outputs), ("figures or tables", measured)] {
             if let Some(port) = ports.iter().enumerate().find_map(|(i, p)| ports[..i].contains(p).then_some(*p)) {
                 return Err(CatalogueError::DuplicatePort { kind: name, what, port: port.clone() });
             }
@@ -189,7 +190,7 @@ impl Catalogue {
 }
 
 /// The candidate most like a misspelt name, where one is alike enough to be meant.
-pub(crate) fn closest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+pub fn closest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     candidates
         .map(|candidate| (strsim::jaro_winkler(name, candidate), candidate))
         .filter(|(likeness, _)| *likeness > 0.75)

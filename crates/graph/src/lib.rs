@@ -42,6 +42,7 @@
 mod catalogue;
 pub mod edit;
 mod evaluate;
+mod examination;
 pub mod file;
 mod graph;
 mod literal;
@@ -54,16 +55,17 @@ mod topology;
 mod unknown_fields;
 mod value;
 
-pub use catalogue::{Catalogue, CatalogueError};
+pub use catalogue::{Catalogue, CatalogueError, closest};
 pub use edit::{Edit, EditError, History, NodeRecord};
 pub use evaluate::{
     CancelToken, Evaluation, Evaluator, EvaluatorOptions, Event, EventKind, EventLog, Events, Failure, Outcome,
     OutcomeState, Request,
 };
+pub use examination::Examination;
 pub use graph::{ConnectError, Graph, GraphError, Link, Node, NodeId, Source};
 pub use literal::{Choice, Colour, FilePath, Literal, LiteralKind, Stroke, StrokePoint, Strokes, Vector};
 pub use node_kind::{ChoiceInput, Choices, Input, NodeKind, OptionalInput, Output};
 pub use port::{InputSpec, OptionSpec, OutputSpec, Range, Unit};
 pub use ports::{AtPort, NodeError, Ports};
-pub use report::{Figure, Report};
+pub use report::{Cell, Column, Figure, FigureHandle, FigureSpec, Report, Table, TableHandle, TableSpec};
 pub use value::{ContentHash, ContentHasher, Value, Wire, WireType};
