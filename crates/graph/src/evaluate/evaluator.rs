@@ -231,13 +231,7 @@ impl Evaluator {
         }
     }
 
-    fn conclude(
-        &mut self,
-        graph: &Graph,
-        request: &Request<'_>,
-        mut plan: Plan,
-        mut ended: Vec<Ended>,
-    ) -> Evaluation {
+    fn conclude(&mut self, graph: &Graph, request: &Request<'_>, mut plan: Plan, mut ended: Vec<Ended>) -> Evaluation {
         let mut evaluation = Evaluation::default();
         let targets: HashSet<NodeId, KeyHasherBuilder> = request.targets.iter().copied().collect();
         let mut outcomes = Vec::with_capacity(plan.order.len());
