@@ -8,6 +8,7 @@ mod resample;
 mod smoothing;
 mod spline;
 mod spline_length;
+mod spread;
 
 pub use arc_length::ArcLength;
 pub use closest::{Closest, closest};
@@ -18,3 +19,4 @@ pub(crate) use smoothing::{Ends, NotSolvable, smoothed};
 pub use smoothing::{SmoothError, smooth};
 pub use spline::{CubicSpline, SplineError, chord_parameters, uniform_parameters};
 pub use spline_length::SplineLength;
+pub use spread::{Spread, spread};

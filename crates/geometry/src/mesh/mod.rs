@@ -9,7 +9,7 @@ pub mod topology;
 pub mod transform;
 pub mod triangulate;
 
-pub use check::{MeshCheck, check};
+pub use check::{MeshCheck, check, check_while};
 pub use distance::{MeshDistance, Nearest};
 pub use polygon::{Mesh, MeshError};
 pub use topology::Topology;

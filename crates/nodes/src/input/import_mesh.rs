@@ -2,8 +2,8 @@
 
 use glam::DAffine3;
 use maquette_geometry::file_format::{FileFormat, gltf_read, obj};
-use maquette_geometry::mesh::{join, transform};
-use maquette_graph::{AtPort, NodeKind};
+use maquette_geometry::mesh::{Mesh, join, measure, transform};
+use maquette_graph::{AtPort, NodeKind, Unit};
 
 use crate::wire;
 
@@ -14,6 +14,12 @@ pub(crate) fn kind() -> NodeKind {
     let scale = node.length("scale", 1.0, 1e-9..=1e9, "Length of one unit of the file; glTF's is a metre.");
     node.soft_range(scale, 0.001..=1.0);
     let mesh = node.output::<wire::Mesh>("mesh", "The mesh.");
+    let size = node.figure("size", Unit::Length, "Diagonal of the box around the mesh: whether the scale is right.");
+    let parts = node.table(
+        "meshes",
+        &[("mesh", Unit::None), ("vertices", Unit::None), ("faces", Unit::None), ("taken", Unit::None)],
+        "The meshes of the file.",
+    );
     node.reads_file(file);
     node.evaluate(move |ports| {
         let path = ports.path(file)?;
@@ -32,9 +38,15 @@ pub(crate) fn kind() -> NodeKind {
             let known: Vec<_> = meshes.iter().map(|m| format!("\"{}\"", m.name())).collect();
             return Err(format!("the file has no mesh \"{wanted}\"; it has {}", known.join(", "))).at(part);
         }
+        let row = |m: &Mesh| {
+            let is_taken = wanted.is_empty() || m.name() == wanted;
+            vec![m.name().into(), m.positions().len().into(), m.polygon_count().into(), is_taken.into()]
+        };
+        ports.table(parts, meshes.iter().map(row).collect());
         let name = taken[0].name().to_owned();
         let joined = join(taken).at(file)?;
         let scaled = transform(&joined, &DAffine3::from_scale(glam::DVec3::splat(ports.value(scale)))).at(scale)?;
+        ports.figure(size, measure::diagonal(&scaled));
         ports.write(mesh, wire::Mesh::new(scaled.named(name)));
         Ok(())
     });
