@@ -34,7 +34,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Promises: results are the same on every run and for any number of threads, as long as node functions depend on
+//! The chapters of the [`guide`] say what to use when, and what is promised. In short: results are the same on every run and for any number of threads, as long as node functions depend on
 //! their inputs alone (and on the files they declare with [`NodeKind::reads_file`]); a failing or panicking node stops
 //! only what depends on it; nothing that was loaded from a file is dropped when it is saved again, but for comments
 //! and the layout of the text.
@@ -46,6 +46,7 @@ mod examination;
 pub mod file;
 pub mod freeze;
 mod graph;
+pub mod guide;
 pub mod harness;
 mod literal;
 mod node_kind;
