@@ -1,8 +1,8 @@
 //! **Resample**: points at equal arc length along each curve.
 //! Reference: thesis 6.4, paper 4.2.
 
-use maquette_geometry::curve::{Amount, Resampling, resample, spread};
-use maquette_graph::{AtPort, Choices, NodeKind, Unit};
+use maquette_geometry::curve::{Amount, ResampleError, Resampling, resample_while, spread};
+use maquette_graph::{AtPort, Choices, NodeError, NodeKind, Unit};
 
 use crate::wire;
 
@@ -56,13 +56,22 @@ pub(crate) fn kind() -> NodeKind {
         let corner_angle = ports.value(keep_corners).then(|| ports.value(corner_angle).to_radians());
         let resampling = Resampling { amount, smooth: ports.value(smooth), corner_angle };
         let drawn = &ports.read(curves).0;
+        let go_on = ports.progress_callback();
         let mut resampled = Vec::with_capacity(drawn.len());
         for (index, curve) in drawn.iter().enumerate() {
             #[expect(clippy::cast_precision_loss, reason = "a share of the work, for a progress bar")]
-            ports.progress(index as f64 / drawn.len() as f64)?;
-            resampled.push(resample(curve, &resampling).at(curves)?);
+            let share = index as f64 / drawn.len() as f64;
+            ports.progress(share)?;
+            resampled.push(match resample_while(curve, &resampling, &|| go_on(share)) {
+                Err(ResampleError::Stopped) => return Err(NodeError::Cancelled),
+                even => even.at(curves)?,
+            });
         }
-        let measured: Vec<_> = drawn.iter().zip(&resampled).map(|(drawn, new)| spread(drawn, new)).collect();
+        let mut measured = Vec::with_capacity(drawn.len());
+        for (drawn, new) in drawn.iter().zip(&resampled) {
+            ports.progress(1.0)?;
+            measured.push(spread(drawn, new));
+        }
         ports.figure(off, measured.iter().map(|m| m.off_drawing).fold(0.0, f64::max));
         let rows = resampled.iter().zip(&measured).map(|(new, found)| {
             let points = new.points().len().into();

@@ -1,8 +1,8 @@
 //! **Sort**: puts curves in the order the detail generator needs, and says what it decided.
 //! Reference: thesis 6.4, Figure 6.11.
 
-use maquette_geometry::curve::{Decision, SortOptions, sort};
-use maquette_graph::{AtPort, Choices, NodeKind, Unit};
+use maquette_geometry::curve::{Decision, SortError, SortOptions, sort_while};
+use maquette_graph::{AtPort, Choices, NodeError, NodeKind, Unit};
 
 use crate::wire;
 
@@ -81,7 +81,11 @@ pub(crate) fn kind() -> NodeKind {
             order: order.collect(),
             reverse_run: ports.value(reverse),
         };
-        let sorted = sort(&ports.read(curves).0, &options).at(curves)?;
+        let go_on = ports.progress_callback();
+        let sorted = match sort_while(&ports.read(curves).0, &options, &|| go_on(0.5)) {
+            Err(SortError::Stopped) => return Err(NodeError::Cancelled),
+            sorted => sorted.at(curves)?,
+        };
         sorted.decisions.iter().for_each(|decision| ports.note(decision));
         let (mut rails_found, mut closed_found) = (Vec::new(), Vec::new());
         for decision in &sorted.decisions {

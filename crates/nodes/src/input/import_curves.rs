@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 use maquette_geometry::curve::{ArcLength, Curve};
-use maquette_geometry::file_format::{FileFormat, curves_json, svg};
-use maquette_graph::{AtPort, Choices, NodeKind, Unit};
+use maquette_geometry::file_format::{FileFormat, ReadError, curves_json, svg};
+use maquette_graph::{AtPort, Choices, NodeError, NodeKind, Unit};
 
 use crate::view_plane::ViewPlane;
 use crate::wire;
@@ -76,7 +76,10 @@ pub(crate) fn kind() -> NodeKind {
         let path = ports.path(file)?;
         let bytes = ports.file(file)?;
         let imported: Vec<Curve> = match FileFormat::from_path(&path.to_string_lossy()).at(file)? {
-            FileFormat::Json => curves_json::read(&bytes).at(file)?,
+            FileFormat::Json => match curves_json::read_while(&bytes, &ports.progress_callback()) {
+                Err(ReadError::Stopped) => return Err(NodeError::Cancelled),
+                curves => curves.at(file)?,
+            },
             FileFormat::Svg => {
                 let (plane, offset, scale) = (ports.choice(plane), ports.value(offset), ports.value(scale));
                 let paths = svg::read(&bytes, ports.value(tolerance) / scale).at(file)?;

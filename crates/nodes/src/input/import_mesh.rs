@@ -1,10 +1,11 @@
 //! **Import mesh**: a mesh from glTF or OBJ.
 
 use glam::DAffine3;
-use maquette_geometry::file_format::{FileFormat, gltf_read, obj};
-use maquette_geometry::mesh::{Mesh, join, measure, transform};
-use maquette_graph::{AtPort, NodeKind, Unit};
+use maquette_geometry::file_format::{FileFormat, ReadError, gltf_read, obj};
+use maquette_geometry::mesh::{Mesh, join_while, measure, transform_while};
+use maquette_graph::{AtPort, NodeError, NodeKind, Unit};
 
+use crate::mesh::stoppable;
 use crate::wire;
 
 pub(crate) fn kind() -> NodeKind {
@@ -24,13 +25,20 @@ pub(crate) fn kind() -> NodeKind {
     node.evaluate(move |ports| {
         let path = ports.path(file)?;
         let bytes = ports.file(file)?;
+        let progress = ports.progress_callback();
+        let reading = |done: f64| progress(0.8 * done);
+        let placing = |done: f64| progress(0.9 + 0.1 * done);
         let meshes = match FileFormat::from_path(&path.to_string_lossy()).at(file)? {
-            FileFormat::Glb | FileFormat::Gltf => gltf_read::read(&bytes).at(file)?,
-            FileFormat::Obj => obj::read(&bytes).at(file)?,
+            FileFormat::Glb | FileFormat::Gltf => gltf_read::read_while(&bytes, &reading),
+            FileFormat::Obj => obj::read_while(&bytes, &reading),
             other => {
                 let message = format!("meshes come from .glb, .gltf or .obj files, not from .{}", other.extension());
                 return Err(message).at(file);
             }
+        };
+        let meshes = match meshes {
+            Err(ReadError::Stopped) => return Err(NodeError::Cancelled),
+            meshes => meshes.at(file)?,
         };
         let wanted = ports.read(part);
         let taken: Vec<_> = meshes.iter().filter(|m| wanted.is_empty() || m.name() == wanted).collect();
@@ -44,8 +52,9 @@ pub(crate) fn kind() -> NodeKind {
         };
         ports.table(parts, meshes.iter().map(row).collect());
         let name = taken[0].name().to_owned();
-        let joined = join(taken).at(file)?;
-        let scaled = transform(&joined, &DAffine3::from_scale(glam::DVec3::splat(ports.value(scale)))).at(scale)?;
+        let joined = stoppable(join_while(taken, &|done| progress(0.8 + 0.1 * done)))?.at(file)?;
+        let sizing = DAffine3::from_scale(glam::DVec3::splat(ports.value(scale)));
+        let scaled = stoppable(transform_while(&joined, &sizing, &placing))?.at(scale)?;
         ports.figure(size, measure::diagonal(&scaled));
         ports.write(mesh, wire::Mesh::new(scaled.named(name)));
         Ok(())
