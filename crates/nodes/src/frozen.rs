@@ -152,6 +152,7 @@ impl Freeze for wire::MeshResult {
     fn freeze(&self) -> Frozen {
         Frozen::record([
             ("mesh", freeze_mesh(&self.mesh)),
+            ("material", Frozen::text(&self.material.name)),
             ("colour", Frozen::Numbers(self.material.colour.to_vec())),
             ("metallic", Frozen::Number(self.material.metallic)),
             ("roughness", Frozen::Number(self.material.roughness)),
@@ -162,7 +163,7 @@ impl Freeze for wire::MeshResult {
     fn thaw(frozen: &Frozen) -> Result<Self, ThawError> {
         let mesh = wire::Mesh::new(thaw_mesh(frozen.field("mesh")?)?);
         let material = Material {
-            name: String::new(),
+            name: frozen.field("material")?.as_text()?.to_owned(),
             colour: four(frozen.field("colour")?)?,
             metallic: frozen.field("metallic")?.number()?,
             roughness: frozen.field("roughness")?.number()?,

@@ -138,6 +138,14 @@ fn inner_segments(curve: &Curve, margin: f64) -> Vec<Segment> {
 mod tests {
     use super::*;
 
+    fn crossing(first: &Curve, second: &Curve, tolerance: f64) -> Option<Crossing> {
+        super::crossing(first, second, tolerance, &|| Ok(())).unwrap()
+    }
+
+    fn gap(first: &Curve, second: &Curve) -> f64 {
+        super::gap(first, second, &|| Ok(())).unwrap()
+    }
+
     fn arch(along: DVec3, lift: f64) -> Curve {
         let points = (0..=400)
             .map(|i| std::f64::consts::PI * (f64::from(i) / 400.0 - 0.5) * 1.5)
