@@ -68,8 +68,8 @@ fn check_one(catalogue: &Catalogue, path: &Path, arguments: &Arguments) -> bool 
     said.iter().for_each(console::remark);
     errors += said.len();
     if arguments.evaluate {
-        let given = file.given(&all);
-        let evaluation = Evaluator::default().evaluate(catalogue, graph, &Request::nodes(&given).base(file.base()));
+        let request = Request::nodes(&file.given(&all)).base(file.base()).examine();
+        let evaluation = Evaluator::default().evaluate(catalogue, graph, &request);
         for (id, outcome) in evaluation.outcomes() {
             match &outcome.state {
                 OutcomeState::Failed(failure) => {

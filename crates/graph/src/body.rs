@@ -9,6 +9,7 @@ use crate::graph::{Graph, Node, Source};
 use crate::literal::{Literal, LiteralKind};
 use crate::node_kind::NodeKind;
 use crate::port::{InputSpec, OutputSpec, Range, Unit};
+use crate::report::{FigureSpec, TableSpec, inside};
 use crate::value::{ContentHash, ContentHasher, WireType};
 
 /// Name of the kind that evaluates a graph.
@@ -306,6 +307,7 @@ impl Body {
         kind.inputs = self.inputs(catalogue, graph)?;
         kind.outputs = self.outputs(catalogue, graph)?;
         kind.content = Some(self.content);
+        declare_measures(&mut kind, graph);
         Ok(Arc::new(kind))
     }
 
@@ -383,6 +385,18 @@ impl Body {
             outputs.push(OutputSpec { name, description, wire });
         }
         Ok(outputs)
+    }
+}
+
+/// What the nodes measure that the outputs depend on, the node measures.
+fn declare_measures(kind: &mut NodeKind, graph: &Graph) {
+    let targets: Vec<_> = graph.outputs().filter_map(|output| Some(output.link()?.node)).collect();
+    for node in graph.upstream(&targets).into_iter().filter_map(|id| graph.node(id)) {
+        let Some(measuring) = node.acting_kind() else { continue };
+        let figures = measuring.figures().iter();
+        kind.figures.extend(figures.map(|spec| FigureSpec { name: inside(node.name(), &spec.name), ..spec.clone() }));
+        let tables = measuring.tables().iter();
+        kind.tables.extend(tables.map(|spec| TableSpec { name: inside(node.name(), &spec.name), ..spec.clone() }));
     }
 }
 

@@ -4,6 +4,7 @@
 mod affine;
 mod curve;
 mod deform;
+mod frozen;
 mod generate;
 mod input;
 mod mesh;
@@ -65,6 +66,7 @@ pub fn catalogue() -> Result<Catalogue, CatalogueError> {
         let joined = join(meshes.iter().map(|mesh| &*mesh.0)).map_err(|error| error.to_string())?;
         Ok(wire::Mesh::new(joined))
     })?;
+    frozen::register(&mut catalogue);
     for kind in kinds() {
         catalogue.register(kind)?;
     }

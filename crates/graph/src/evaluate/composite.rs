@@ -1,19 +1,20 @@
 //! Steps whose kind has a body: they end when the runs of that body do.
 
 use std::collections::BTreeMap;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use crate::body::{Body, COUNT, INDEX, Repeat, is_index};
+use crate::evaluate::call;
 use crate::evaluate::evaluator::announce;
 use crate::evaluate::inputs::{FileContent, Key};
 use crate::evaluate::memo::Entry;
 use crate::evaluate::place::{GraphRef, Place};
 use crate::evaluate::plan::{Found, Planner, Step};
-use crate::evaluate::run::{Ended, Led, Run, Runner, locked, panic_message};
+use crate::evaluate::run::{Ended, Led, Run, Runner, locked};
 use crate::evaluate::{EventKind, Failure};
 use crate::graph::{Graph, NodeId, Source};
+use crate::ports::NodeError;
 use crate::report::Report;
 use crate::value::Value;
 
@@ -70,6 +71,16 @@ fn at(port: &str, message: impl Into<String>) -> Failure {
     Failure { port: Some(port.to_owned()), message: message.into() }
 }
 
+/// Lists are split and joined by functions of the catalogue; a panic in one is a failure of the step.
+fn caught<T>(step: &Step, run: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+    call::caught(&step.kind, || Ok(run())).unwrap_or_else(|error| {
+        Err(plain(match error {
+            NodeError::Failed { message, .. } => message,
+            NodeError::Cancelled => "it was stopped".to_owned(),
+        }))
+    })
+}
+
 impl<'a> Composite<'a> {
     pub(crate) fn new(
         run: Arc<Run<'a>>,
@@ -98,9 +109,7 @@ impl<'a> Composite<'a> {
 impl<'a> Runner<'a> {
     /// Begins to evaluate a body.
     pub(crate) fn begin(&self, composite: Arc<Composite<'a>>, led: &mut Led<'a>) {
-        let counted = catch_unwind(AssertUnwindSafe(|| self.count(&composite)))
-            .unwrap_or_else(|panic| Err(plain(panic_message(&composite.step().kind, panic.as_ref()))));
-        match counted {
+        match caught(composite.step(), || self.count(&composite)) {
             Ok((total, items)) => {
                 let mut times = locked(&composite.times);
                 times.total = total;
@@ -316,9 +325,7 @@ impl<'a> Runner<'a> {
         if cancelled {
             return self.land(&composite.run, composite.step, Ended::Cancelled, Some(composite.key.hash), led);
         }
-        let values = catch_unwind(AssertUnwindSafe(|| self.outputs(composite, &times)))
-            .unwrap_or_else(|panic| Err(plain(panic_message(&composite.step().kind, panic.as_ref()))));
-        let values = match values {
+        let values = match caught(composite.step(), || self.outputs(composite, &times)) {
             Ok(values) => values,
             Err(failure) => return self.fail(composite, failure, led),
         };
@@ -397,7 +404,7 @@ fn gather(composite: &Composite<'_>, run: &Run<'_>, index: usize) -> Gave {
             Ended::Done { key, report, .. } => {
                 gave.files.extend(key.files.iter().flat_map(|files| files.iter().cloned()));
                 let name = graph.node(id).map_or("", |node| node.name());
-                gave.report.absorb(&format!("{prefix}{name}"), &report);
+                gave.report.absorb(&format!("{prefix}{name}"), name, &report);
             }
             Ended::Failed { failure, .. } => failures.push((id, failure)),
             Ended::Waiting(_) => {}

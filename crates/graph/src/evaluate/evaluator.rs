@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use crate::catalogue::Catalogue;
 use crate::evaluate::evaluation::{Evaluation, Outcome, OutcomeState};
+use crate::evaluate::examine::Examiner;
 use crate::evaluate::file_cache::FileCache;
 use crate::evaluate::flight::Flights;
 use crate::evaluate::inputs::{Disk, Key};
@@ -43,12 +44,19 @@ pub struct Request<'a> {
     events: &'a dyn Events,
     cancel: CancelToken,
     base: PathBuf,
+    examine: bool,
 }
 
 impl<'a> Request<'a> {
     /// Asks for the results of these nodes and, through them, of what they depend on.
     pub fn nodes(targets: &[NodeId]) -> Self {
-        Self { targets: targets.to_vec(), events: &(), cancel: CancelToken::new(), base: PathBuf::new() }
+        Self {
+            targets: targets.to_vec(),
+            events: &(),
+            cancel: CancelToken::new(),
+            base: PathBuf::new(),
+            examine: false,
+        }
     }
 
     /// Listens to what happens.
@@ -61,6 +69,12 @@ impl<'a> Request<'a> {
     #[must_use]
     pub fn cancel(self, cancel: &CancelToken) -> Self {
         Self { cancel: cancel.clone(), ..self }
+    }
+
+    /// Asks as well for what the kinds of these nodes measure on request only ([`crate::NodeKind::examine`]).
+    #[must_use]
+    pub fn examine(self) -> Self {
+        Self { examine: true, ..self }
     }
 
     /// Relative paths in the graph start at this folder.
@@ -163,7 +177,14 @@ impl Evaluator {
         runner.run(&run, self.pool.as_ref());
         drop(runner);
         self.files.drop_bytes();
-        self.conclude(request, &run, begun)
+        let mut evaluation = self.conclude(request, &run);
+        if request.examine {
+            let key_of = |id: NodeId| self.slots.get(id.index()).and_then(|slot| slot.key.clone());
+            let examiner = Examiner { memo: &self.memo, cancel: &request.cancel, events: request.events };
+            examiner.examine(&mut evaluation, key_of);
+        }
+        evaluation.duration = begun.elapsed();
+        evaluation
     }
 
     /// Marks what changed since the last evaluation, and everything behind it, as stale.
@@ -220,7 +241,7 @@ impl Evaluator {
         }
     }
 
-    fn conclude(&mut self, request: &Request<'_>, run: &Run<'_>, begun: Instant) -> Evaluation {
+    fn conclude(&mut self, request: &Request<'_>, run: &Run<'_>) -> Evaluation {
         let (graph, plan) = (run.place.graph(), &run.plan);
         let mut evaluation = Evaluation::default();
         let targets: HashSet<NodeId, KeyHasherBuilder> = request.targets.iter().copied().collect();
@@ -270,7 +291,6 @@ impl Evaluator {
         self.forget_keys(graph, behind, |slot| slot.computed_in != evaluation_number);
         evaluation.outcomes = outcomes.into_iter().collect();
         evaluation.kinds = kinds.into_iter().collect();
-        evaluation.duration = begun.elapsed();
         evaluation
     }
 }

@@ -23,8 +23,8 @@ pub struct Event<'a> {
 /// First come the nodes that are settled without running: [`Hit`](Self::Hit), [`Failed`](Self::Failed) or
 /// [`Waiting`](Self::Waiting), one for each. Then comes [`Planned`](Self::Planned), and after it the scheduled
 /// nodes. Each of these ends with exactly one of `Hit`, `Finished`, `Failed`, `Waiting` and `Cancelled`: a progress bar
-/// that takes its length from `Planned` and counts these five, from there on, fills exactly. `Started` and `Progress`
-/// don't count; a node that starts is ended by `Finished`, `Failed` or `Cancelled`.
+/// that takes its length from `Planned` and counts these five, from there on, fills exactly. `Started`, `Progress` and
+/// `Examined` don't count; a node that starts is ended by `Finished`, `Failed` or `Cancelled`.
 ///
 /// When a node with a body starts, the nodes within are planned. `Planned` then comes again with the larger number, and
 /// after it one of the five for each node within, be it settled without running or not; the node itself ends last.
@@ -48,6 +48,9 @@ pub enum EventKind<'a> {
     Waiting(&'a [String]),
     /// It was stopped.
     Cancelled,
+    /// What [`crate::Request::examine`] asks for was measured on its values, in this time. Comes behind the end of
+    /// the node, and does not count.
+    Examined(Duration),
 }
 
 impl fmt::Display for Event<'_> {
@@ -62,6 +65,7 @@ impl fmt::Display for Event<'_> {
             EventKind::Failed(failure) => write!(f, "failed {name}: {failure}"),
             EventKind::Waiting(on) => write!(f, "waiting {name} on {}", on.join(", ")),
             EventKind::Cancelled => write!(f, "cancelled {name}"),
+            EventKind::Examined(_) => write!(f, "examined {name}"),
         }
     }
 }
