@@ -13,3 +13,4 @@ draw head head 480x640
 draw head head-curves 480x640 --curves --view side
 draw neck neck 560x480 --curves
 draw leg leg 400x640 --curves
+draw legs legs 560x640 --curves
