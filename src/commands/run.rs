@@ -240,7 +240,7 @@ fn as_text(arguments: &Arguments, evaluated: &Evaluated, scene: &Scene, written:
 }
 
 /// Four digits are enough to read; `--json` has them all.
-fn digits(value: f64) -> String {
+pub(super) fn digits(value: f64) -> String {
     if value.abs() < 1e-12 {
         return "0".to_owned();
     }
