@@ -26,6 +26,7 @@ enum Command {
     Verify(commands::verify::Arguments),
     Nodes(commands::nodes::Arguments),
     Render(commands::render::Arguments),
+    Wedge(Box<commands::wedge::Arguments>),
 }
 
 fn main() -> ExitCode {
@@ -41,6 +42,7 @@ fn main() -> ExitCode {
         Command::Verify(arguments) => commands::verify::verify(arguments),
         Command::Nodes(arguments) => commands::nodes::nodes(arguments),
         Command::Render(arguments) => commands::render::render(arguments),
+        Command::Wedge(arguments) => commands::wedge::wedge(arguments),
     });
     let ended = ended.unwrap_or_else(|_| {
         commands::console::error("maquette broke down; this is a mistake in the program, please report it");

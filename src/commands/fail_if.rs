@@ -80,6 +80,11 @@ impl Limit {
         Ok(Self { text: text.to_owned(), node, figure: figure.to_owned(), comparison, bound })
     }
 
+    /// As it was given.
+    pub(super) fn text(&self) -> &str {
+        &self.text
+    }
+
     fn is_about(&self, node: &str, figure: &str) -> bool {
         self.figure == figure && self.node.as_ref().is_none_or(|n| n == node)
     }

@@ -19,6 +19,7 @@ mod results;
 pub mod run;
 pub mod verify;
 mod watch;
+pub mod wedge;
 mod write;
 
 /// How a command ended; the number is the exit code.

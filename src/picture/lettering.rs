@@ -61,7 +61,8 @@ impl Lettering {
                         continue;
                     };
                     for (below, above) in pixel.iter_mut().zip(colour) {
-                        let mixed = u32::from(*below) * (255 - u32::from(*cover)) + u32::from(above) * u32::from(*cover);
+                        let mixed =
+                            u32::from(*below) * (255 - u32::from(*cover)) + u32::from(above) * u32::from(*cover);
                         *below = ((mixed + 127) / 255) as u8;
                     }
                 }

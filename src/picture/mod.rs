@@ -24,8 +24,8 @@ use image::ImageEncoder;
 use image::codecs::png::PngEncoder;
 use maquette_geometry::scene::Scene;
 
-use camera::{Bounds, Camera};
 pub use camera::View;
+use camera::{Bounds, Camera};
 use shading::to_linear;
 use stroke::{Stroke, Strokes};
 use subject::Subject;

@@ -44,7 +44,9 @@ impl Pattern {
                 continue;
             }
             let end = rest.find('}').filter(|_| bracket == "{");
-            let end = end.ok_or_else(|| fail(format!("a {bracket} stands alone; write {bracket}{bracket} for one that is meant")))?;
+            let end = end.ok_or_else(|| {
+                fail(format!("a {bracket} stands alone; write {bracket}{bracket} for one that is meant"))
+            })?;
             let name = &rest[..end];
             rest = &rest[end + 1..];
             let part = match axes.iter().position(|axis| axis.address == name) {
@@ -69,9 +71,8 @@ impl Pattern {
             Some(Part::Text(last)) => last.as_str(),
             _ => "",
         };
-        let format = write::format(Path::new(&format!("name{last}"))).map_err(|_| {
-            fail("end it in the format to write: .glb, .gltf, .obj, .ply or .json".to_owned())
-        })?;
+        let format = write::format(Path::new(&format!("name{last}")))
+            .map_err(|_| fail("end it in the format to write: .glb, .gltf, .obj, .ply or .json".to_owned()))?;
         Ok(Self { text: text.to_owned(), parts, format })
     }
 
@@ -107,7 +108,11 @@ pub(super) fn written(path: &Path, format: FileFormat) -> Vec<PathBuf> {
 }
 
 /// Says where two variants, or two patterns, would write the same file, or one that is read.
-pub(super) fn check_distinct(patterns: &[Pattern], variants: &Variants, taken: &[(PathBuf, String)]) -> Result<(), String> {
+pub(super) fn check_distinct(
+    patterns: &[Pattern],
+    variants: &Variants,
+    taken: &[(PathBuf, String)],
+) -> Result<(), String> {
     // File systems that don't tell large letters from small ones must not lose results.
     let key = |path: &Path| {
         let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
@@ -122,7 +127,11 @@ pub(super) fn check_distinct(patterns: &[Pattern], variants: &Variants, taken: &
             for path in written(&pattern.file(variants, variant), pattern.format) {
                 let what = format!("the variant {}", variants.describe(variant));
                 let Some((other, before)) = known.insert(key(&path), (path.clone(), what.clone())) else { continue };
-                let same = if other == path { "" } else { " (names that differ only in large and small letters count as the same)" };
+                let same = if other == path {
+                    ""
+                } else {
+                    " (names that differ only in large and small letters count as the same)"
+                };
                 return Err(format!(
                     "error: -o {}: {} would be written for {what} and is {before}'s already{same}; put {{index}} or more \
                      addresses into the name",
@@ -184,7 +193,10 @@ mod tests {
     fn values_and_numbers_are_put_in() {
         let variants = variants(&["body.k_s=0.5,1", "moved.rotate=(0,1,0),(0,-2,0)"]);
         let names = names("out/{body.k_s}/{{a}}{moved.rotate}-{index}.glb", &variants);
-        assert_eq!(names, ["out/0.5/{a}0_1_0-1.glb", "out/0.5/{a}0_-2_0-2.glb", "out/1/{a}0_1_0-3.glb", "out/1/{a}0_-2_0-4.glb"]);
+        assert_eq!(
+            names,
+            ["out/0.5/{a}0_1_0-1.glb", "out/0.5/{a}0_-2_0-2.glb", "out/1/{a}0_1_0-3.glb", "out/1/{a}0_-2_0-4.glb"]
+        );
     }
 
     #[test]
@@ -200,19 +212,19 @@ mod tests {
 
     #[test]
     fn two_variants_never_share_a_file() {
-        let variants = variants(&["body.k_s=1,2", "moved.scale=1,3"]);
+        let variants = variants(&["body.k_s=1,2", "body.k_b=1,3"]);
         let check = |patterns: &[&str], taken: &[(PathBuf, String)]| {
             let patterns: Vec<_> = patterns.iter().map(|p| Pattern::parse(p, &variants.axes).unwrap()).collect();
             check_distinct(&patterns, &variants, taken)
         };
         let error = check(&["{body.k_s}.glb"], &[]).unwrap_err();
-        assert!(error.contains("1.glb would be written for the variant body.k_s=1 moved.scale=3 and is the variant body.k_s=1 moved.scale=1's"), "{error}");
-        check(&["{body.k_s}{moved.scale}.glb", "{index}.obj", "{index}.ply"], &[]).unwrap();
+        assert!(error.contains("1.glb would be written for the variant body.k_s=1 body.k_b=3 and is the variant body.k_s=1 body.k_b=1's"), "{error}");
+        check(&["{body.k_s}{body.k_b}.glb", "{index}.obj", "{index}.ply"], &[]).unwrap();
         check(&["{index}.glb", "./{index}.glb"], &[]).unwrap_err();
         check(&["{index}.obj", "{index}.glb"], &[(PathBuf::from("2.mtl"), "a file".to_owned())]).unwrap_err();
         // 1 with 13 and 11 with 3.
-        let variants = super::tests::variants(&["body.k_s=1,11", "moved.scale=13,3"]);
-        let pattern = Pattern::parse("{body.k_s}{moved.scale}.glb", &variants.axes).unwrap();
+        let variants = super::tests::variants(&["body.k_s=1,11", "body.k_b=13,3"]);
+        let pattern = Pattern::parse("{body.k_s}{body.k_b}.glb", &variants.axes).unwrap();
         check_distinct(&[pattern], &variants, &[]).unwrap_err();
     }
 

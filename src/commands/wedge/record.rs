@@ -102,7 +102,9 @@ fn read(path: &Path, bytes: &[u8]) -> Result<Vec<Line>, String> {
     let mut lines = bytes.split(|byte| *byte == b'\n');
     let head = lines.next().and_then(|line| serde_json::from_slice::<Head>(line).ok());
     match head {
-        Some(head) if head.wedge_record == VERSION => Ok(lines.filter_map(|l| serde_json::from_slice(l).ok()).collect()),
+        Some(head) if head.wedge_record == VERSION => {
+            Ok(lines.filter_map(|l| serde_json::from_slice(l).ok()).collect())
+        }
         Some(head) => Err(format!(
             "{}: its format has version {}, and this Maquette writes {VERSION}: give another name with --record",
             path.display(),
@@ -174,7 +176,10 @@ mod tests {
             std::fs::write(&path, &whole[..end]).unwrap();
             let mut record = open(&path, &["ka", "kb"], &[&a, &b]);
             let known = [record.finished("ka").is_some(), record.finished("kb").is_some()];
-            assert!(known == [false, false] || known == [true, false] || (known == [true, true] && end + 1 == whole.len()), "{end}");
+            assert!(
+                known == [false, false] || known == [true, false] || (known == [true, true] && end + 1 == whole.len()),
+                "{end}"
+            );
             record.add("kb", &b).unwrap();
             assert!(open(&path, &["ka", "kb"], &[&a, &b]).finished("kb").is_some(), "{end}");
         }

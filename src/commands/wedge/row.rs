@@ -205,7 +205,11 @@ mod tests {
         let mut row = Row::unreached(3, vec!["0.5".into()], State::Done);
         row.figures = [0.25, 1e-300, f64::INFINITY, f64::NEG_INFINITY].map(figure).into();
         row.results = vec![
-            ResultRow { name: "vest".into(), bounds: Some([[0.0; 3], [1.0; 3]]), size: Size::Mesh { vertices: 8, faces: 6 } },
+            ResultRow {
+                name: "vest".into(),
+                bounds: Some([[0.0; 3], [1.0; 3]]),
+                size: Size::Mesh { vertices: 8, faces: 6 },
+            },
             ResultRow { name: "lines".into(), bounds: None, size: Size::Curves { curves: 0, points: 0 } },
         ];
         row.files = vec![FileRow { path: "a.glb".into(), bytes: 3, hash: "00".into() }];

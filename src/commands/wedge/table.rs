@@ -191,8 +191,12 @@ impl Table<'_> {
     /// Everything, for programs.
     pub(super) fn to_json(&self) -> Json {
         let variants = self.rows.iter().map(|row| {
-            let values: serde_json::Map<String, Json> =
-                self.addresses.iter().zip(&row.values).map(|(a, v)| ((*a).to_owned(), Json::from(v.as_str()))).collect();
+            let values: serde_json::Map<String, Json> = self
+                .addresses
+                .iter()
+                .zip(&row.values)
+                .map(|(a, v)| ((*a).to_owned(), Json::from(v.as_str())))
+                .collect();
             let mut json = json!(row);
             json["values"] = Json::Object(values);
             json

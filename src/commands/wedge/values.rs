@@ -3,7 +3,7 @@
 //! | written | meaning |
 //! |---|---|
 //! | `0.8,1,1.2` | these values |
-//! | `0.1..10:7` | seven numbers from 0.1 to 10 in equal steps, both ends included |
+//! | `0.1..10:7` | seven numbers from 0.1 to 10 in equal steps, both ends included, rounded to a thousandth of a step |
 //! | `0.1..10:7:log` | the same in equal ratios |
 //! | `2..5` | whole numbers: all from 2 to 5 |
 //! | `0.1..10`, `0.1..10:log` | with `--samples`: anywhere between |
@@ -16,6 +16,11 @@ use crate::commands::overrides::Place;
 
 /// Most values of one address.
 const MOST_VALUES: usize = 100_000;
+
+/// To which share of a step the numbers of a range are rounded.
+const GRAIN: f64 = 1e-3;
+/// To which share of a range its samples are rounded.
+pub(super) const SAMPLE_GRAIN: f64 = 1e-6;
 
 /// A value that an address takes.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,13 +61,14 @@ impl Vary {
     /// Reads `ADDRESS=VALUES`; every value is tried at its place in `graph`, which keeps the last of them.
     pub(super) fn parse(graph: &mut Graph, text: &str) -> Result<Self, String> {
         let fail = |reason: String| format!("--vary {text}: {reason}");
-        let (address, values) =
-            text.split_once('=').ok_or_else(|| fail("write it as NODE.PORT=0.8,1,1.2 or NODE.PORT=0.1..10:7".into()))?;
+        let (address, values) = text
+            .split_once('=')
+            .ok_or_else(|| fail("write it as NODE.PORT=0.8,1,1.2 or NODE.PORT=0.1..10:7".into()))?;
         let place = Place::find(graph, address).map_err(fail)?;
         let spread = spread(&place, values.trim()).map_err(fail)?;
         let tried = match &spread {
             Spread::Values(values) => values.iter().map(|value| value.literal.clone()).collect(),
-            Spread::Between(between) => vec![between.at(0.0).literal, between.at(1.0).literal],
+            Spread::Between(between) => vec![between.at(0.0, 1.0).literal, between.at(1.0, 1.0).literal],
         };
         for literal in tried {
             place.set(graph, literal).map_err(fail)?;
@@ -72,8 +78,9 @@ impl Vary {
 }
 
 impl Between {
-    /// The number at a share of the way, 0 to 1; whole numbers all get the same share.
-    pub(super) fn at(&self, share: f64) -> Value {
+    /// The number at a share of the way, 0 to 1; whole numbers all get the same share. It is rounded to `grain` of the
+    /// way: nobody wants to read 1.7499999999999998, and what is shown is what is set.
+    pub(super) fn at(&self, share: f64, grain: f64) -> Value {
         let Self { from, to, log, whole } = *self;
         if whole {
             let (low, high) = (from.min(to), from.max(to));
@@ -81,19 +88,21 @@ impl Between {
             return integer(value);
         }
         // The ends are exact.
-        let value = match share {
-            0.0 => from,
-            1.0 => to,
-            _ if log => from * (to / from).powf(share),
-            _ => from + (to - from) * share,
+        if share == 0.0 || share == 1.0 {
+            return number(if share == 0.0 { from } else { to });
+        }
+        let (value, way) = if log {
+            let value = from * (to / from).powf(share);
+            (value, value * (to / from).ln())
+        } else {
+            (from + (to - from) * share, to - from)
         };
-        number(value)
+        let decimals = (-(way.abs() * grain).log10()).ceil().clamp(0.0, 300.0) as usize;
+        number(format!("{value:.decimals$}").parse().unwrap_or(value))
     }
 }
 
-/// A number at twelve digits: nobody wants to read 1.7499999999999998, and what is shown is what is set.
 fn number(value: f64) -> Value {
-    let value = format!("{value:.11e}").parse().unwrap_or(value);
     // Not the zero with a sign.
     let value = if value == 0.0 { 0.0 } else { value };
     Value { text: value.to_string(), literal: Literal::Number(value) }
@@ -215,7 +224,9 @@ impl Range {
         let count = match rest.map(str::trim) {
             None => None,
             Some(count) => Some(
-                count.parse::<usize>().map_err(|_| fail(format!("\"{count}\" is not a number of values or \"log\"")))?,
+                count
+                    .parse::<usize>()
+                    .map_err(|_| fail(format!("\"{count}\" is not a number of values or \"log\"")))?,
             ),
         };
         let (from, to) = ends.split_once("..").ok_or_else(|| fail("there is no ..".to_owned()))?;
@@ -265,8 +276,8 @@ impl Range {
             None => return Ok(None),
         };
         let exact = Between { from, to, log, whole: false };
-        let share = |index: usize| index as f64 / (count - 1) as f64;
-        let real = (0..count).map(|index| exact.at(share(index)));
+        let steps = (count - 1) as f64;
+        let real = (0..count).map(|index| exact.at(index as f64 / steps, GRAIN / steps));
         if !whole {
             return Ok(Some(real.collect()));
         }
@@ -312,7 +323,9 @@ mod tests {
         assert_eq!(texts("body.k_s=0.1..0.8:8"), ["0.1", "0.2", "0.3", "0.4", "0.5", "0.6", "0.7", "0.8"]);
         assert_eq!(texts("body.k_s=0.01..100:5:log"), ["0.01", "0.1", "1", "10", "100"]);
         assert_eq!(texts("body.k_s=3..1:3"), ["3", "2", "1"]);
-        assert_eq!(texts("moved.scale=1..2:2,5"), ["1", "2", "5"]);
+        assert_eq!(texts("body.k_s=0..1:7"), ["0", "0.1667", "0.3333", "0.5", "0.6667", "0.8333", "1"]);
+        assert_eq!(texts("body.k_s=0.2..5:4:log"), ["0.2", "0.5848", "1.71", "5"]);
+        assert_eq!(texts("body.k_b=1..2:2,5"), ["1", "2", "5"]);
     }
 
     #[test]
@@ -338,9 +351,10 @@ mod tests {
     #[test]
     fn sampled_ranges_give_each_whole_number_the_same_share() {
         let Spread::Between(between) = vary("body.k_s=1..100:log").unwrap().spread else { panic!("a range") };
-        assert_eq!([0.0, 0.5, 1.0].map(|share| between.at(share).text), ["1", "10", "100"]);
+        assert_eq!([0.0, 0.5, 1.0].map(|share| between.at(share, 1e-6).text), ["1", "10", "100"]);
+        assert_eq!(between.at(0.3, 1e-3).text, "3.98");
         let whole = Between { from: 3.0, to: 5.0, log: false, whole: true };
-        assert_eq!([0.0, 0.33, 0.34, 0.66, 0.67, 1.0].map(|s| whole.at(s).text), ["3", "3", "4", "4", "5", "5"]);
+        assert_eq!([0.0, 0.33, 0.34, 0.66, 0.67, 1.0].map(|s| whole.at(s, 1e-6).text), ["3", "3", "4", "4", "5", "5"]);
     }
 
     #[test]

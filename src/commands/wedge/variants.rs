@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::commands::overrides::Place;
 
-use super::values::{Spread, Value, Vary};
+use super::values::{SAMPLE_GRAIN, Spread, Value, Vary};
 
 /// More variants than these are probably a mistake.
 pub(super) const MANY: usize = 100_000;
@@ -155,7 +155,9 @@ fn groups(axes: &[Axis], zip: &[String]) -> Result<Vec<Vec<usize>>, String> {
             list.split(',').map(|address| find(address.trim())).collect::<Result<_, _>>()?
         };
         let Some((&first, others)) = members.split_first().filter(|(_, others)| !others.is_empty()) else {
-            return Err(format!("error: --zip={list}: it takes two addresses that vary together, such as --zip=a.x,b.y"));
+            return Err(format!(
+                "error: --zip={list}: it takes two addresses that vary together, such as --zip=a.x,b.y"
+            ));
         };
         for &axis in others {
             if axis == first || leader[axis] != axis || leader[first] != first {
@@ -203,7 +205,7 @@ fn sampled(varies: Vec<Vary>, count: u32, seed: u32) -> Result<Variants, String>
             }
             Spread::Between(between) => {
                 let (mut values, mut known, mut column) = (Vec::<Value>::new(), BTreeMap::new(), Vec::new());
-                for value in (0..count).map(|sample| between.at(share(sample))) {
+                for value in (0..count).map(|sample| between.at(share(sample), SAMPLE_GRAIN)) {
                     let index = *known.entry(value.text.clone()).or_insert_with(|| {
                         values.push(value);
                         values.len() - 1
