@@ -40,7 +40,7 @@ compare() {
     echo "$name: $(find "$name" -type f | wc -l) files are the same"
 }
 
-compare combined --vary body.k_s=0.5,2 --vary 'tilted neckline.rotate=(16,0,0),(-5,0,0)' --vary neckline.plane=top \
+compare combined --vary body.k_s=0.5,2 --vary 'tilted neckline.rotate=(16,0,0),(15.5,-0.1,0)' --vary neckline.plane=top \
     --output vest -o 'combined/{body.k_s}/a "b" {tilted neckline.rotate}.glb' -o 'combined/{body.k_s}{tilted neckline.rotate}.ply'
 compare zipped --vary body.k_s=0.5..2:3 --vary body.sections=20..40:3 --vary surface.rows=1,2 \
     --zip=body.k_s,body.sections --set vest.roughness=0.5 -o 'zipped/{body.sections}-{surface.rows}.obj'

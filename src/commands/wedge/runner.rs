@@ -129,7 +129,9 @@ impl<'a> Runner<'a> {
                 *current = Some(choice);
             }
         }
-        let request = Request::nodes(targets).base(file.base()).cancel(self.cancel);
+        // All that results depend on is asked for: what is remembered from the variant before has figures too.
+        let asked = file.loaded.graph.upstream(targets);
+        let request = Request::nodes(&asked).base(file.base()).cancel(self.cancel);
         Ok(self.evaluator.evaluate(catalogue, &file.loaded.graph, &request))
     }
 
