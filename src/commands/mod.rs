@@ -28,7 +28,7 @@ mod write;
 pub enum Ended {
     /// Everything was done.
     Done = 0,
-    /// A node failed, a limit was exceeded, or what was compared differs.
+    /// A node failed, a limit was exceeded, what was compared differs, or a wedge was stopped.
     Failed = 1,
     /// The graph or the arguments are wrong.
     Wrong = 2,

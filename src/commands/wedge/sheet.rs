@@ -54,8 +54,10 @@ impl Layout {
         let count = variants.len().max(1);
         let pitch = layout.pitch();
         let even = (count as f64 * SHAPE * pitch[1] as f64 / pitch[0] as f64).sqrt().round().max(1.0) as usize;
-        let in_order = variants.columns().filter(|columns| (2..=MOST_COLUMNS).contains(columns));
-        layout.columns = in_order.unwrap_or(even).min(count);
+        // Rows that begin with the same values are easier to compare than a good shape is worth.
+        let apart = |columns: &usize| (columns.max(&even) * 100) / columns.min(&even).max(&1);
+        let in_order = variants.periods().into_iter().filter(|columns| (2..=MOST_COLUMNS).contains(columns));
+        layout.columns = in_order.min_by_key(apart).unwrap_or(even).min(count);
         layout.head = Lettering::Heading.height() + LEADING + Lettering::Caption.height() + GAP;
         let rows = count.div_ceil(layout.columns);
         let side = |count: usize, pitch: usize| (count.saturating_mul(pitch)).saturating_sub(GAP) + 2 * MARGIN;
@@ -273,6 +275,8 @@ mod tests {
         assert_eq!(layout.place(5)[0], layout.place(1)[0]);
         let layout = Layout::new(&variants(&["body.k_s=1..2:12"]), (320, 240)).unwrap();
         assert_eq!(layout.columns, 4);
+        let three = ["body.k_s=1..2:4", "body.k_b=1,2", "other.k_s=1,2"];
+        assert_eq!(Layout::new(&variants(&three), (280, 320)).unwrap().columns, 4);
     }
 
     #[test]

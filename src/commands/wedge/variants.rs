@@ -92,10 +92,16 @@ impl Variants {
         order
     }
 
-    /// How many values the group that varies fastest has, where variants are all combinations of several groups.
-    pub(super) fn columns(&self) -> Option<usize> {
-        let last = self.groups.last().filter(|_| self.groups.len() > 1)?;
-        Some(self.axes[*last.first()?].values.len())
+    /// After how many variants the values that vary fastest begin anew, where variants are all combinations of several
+    /// groups: those of the last group, of the last two, and so on.
+    pub(super) fn periods(&self) -> Vec<usize> {
+        let lengths = self.groups.iter().skip(1).rev().map(|group| self.axes[group[0]].values.len());
+        lengths
+            .scan(1, |period, length| {
+                *period *= length;
+                Some(*period)
+            })
+            .collect()
     }
 }
 
@@ -257,7 +263,7 @@ mod tests {
     fn the_last_address_varies_fastest() {
         let variants = variants(&["g.x=1,2", "g.n=1..3"], &Combining::default()).unwrap();
         assert_eq!(described(&variants), ["x=1 n=1", "x=1 n=2", "x=1 n=3", "x=2 n=1", "x=2 n=2", "x=2 n=3"]);
-        assert_eq!(variants.columns(), Some(3));
+        assert_eq!(variants.periods(), [3]);
         // What costs most varies slowest, whatever was asked for.
         assert_eq!(variants.cheapest_order(&[1, 5]), [0, 3, 1, 4, 2, 5]);
         assert_eq!(variants.cheapest_order(&[5, 1]), [0, 1, 2, 3, 4, 5]);
