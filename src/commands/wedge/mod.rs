@@ -146,25 +146,19 @@ pub fn wedge_until(arguments: &Arguments, cancel: &CancelToken) -> Ended {
         },
         _ => None,
     };
-    if cancel.is_cancelled() {
+    let undrawn = arguments.sheet.is_some() && drawn.is_none() && cancel.is_cancelled();
+    if undrawn || rows.iter().any(|row| row.state == State::Stopped) {
         let finished = rows.iter().filter(|row| matches!(row.state, State::Done | State::Kept)).count();
         let more = if runner.has_record() { "; the same command continues" } else { "" };
         console::remark(format!("stopped: {finished} of {} variants are finished{more}", rows.len()));
     }
     let mut written = Vec::new();
-    let (plan, errors) = runner.finish();
-    let mut errors: Vec<String> = errors;
-    let mut keep = |path: &Path, bytes: &[u8]| match put(path, bytes) {
-        Ok(()) => written.push((path.to_owned(), bytes.len())),
-        Err(error) => errors.push(error),
-    };
-    if let Some((path, bytes)) = drawn {
-        keep(path, &bytes);
-    }
-    for (path, form) in &plan.tables {
-        match plan.table(&rows, begun, &[]).to_bytes(*form) {
-            Ok(bytes) => keep(path, &bytes),
-            Err(error) => console::error(error),
+    let (plan, mut errors) = runner.finish();
+    let tables = plan.tables.iter().map(|(path, form)| (path, plan.table(&rows, begun, &[]).to_bytes(*form)));
+    for (path, bytes) in drawn.into_iter().map(|(path, bytes)| (path, Ok(bytes))).chain(tables) {
+        match bytes.and_then(|bytes| put(path, &bytes).map(|()| bytes.len())) {
+            Ok(bytes) => written.push((path, bytes)),
+            Err(error) => errors.push(error),
         }
     }
     errors.iter().for_each(console::error);
@@ -175,7 +169,7 @@ pub fn wedge_until(arguments: &Arguments, cancel: &CancelToken) -> Ended {
             console::say(format!("wrote {} ({bytes} bytes)", path.display()));
         }
     }
-    ended(&rows, &errors)
+    if undrawn { Ended::Failed } else { ended(&rows, &errors) }
 }
 
 fn ended(rows: &[Row], errors: &[String]) -> Ended {

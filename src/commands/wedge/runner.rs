@@ -79,7 +79,7 @@ impl<'a> Runner<'a> {
                 return Err(unknown);
             }
             limits_known |= evaluation.is_complete();
-            if row.state == State::Done || (row.state != State::Stopped && self.arguments.evaluation.keep_going) {
+            if row.state == State::Done || self.arguments.evaluation.keep_going {
                 self.write(&evaluation, variant, row);
             }
             bar.aside(|| self.say(variant, row));

@@ -116,10 +116,10 @@ fn integer(value: f64) -> Value {
 
 fn spread(place: &Place, text: &str) -> Result<Spread, String> {
     let numeric = matches!(place.wanted, LiteralKind::Number | LiteralKind::Integer);
-    if text == "*" {
-        if let Some(values) = all_options(place) {
-            return Ok(Spread::Values(values));
-        }
+    if text == "*"
+        && let Some(values) = all_options(place)
+    {
+        return Ok(Spread::Values(values));
     }
     let mut values: Vec<Value> = Vec::new();
     let pieces = pieces(text);
