@@ -70,10 +70,13 @@ pub struct Arguments {
     /// From where the pictures of the sheet are seen.
     #[arg(long, value_enum, default_value_t = ViewName::ThreeQuarter)]
     view: ViewName,
-    /// A variant fails where a figure is beyond this limit: 'NODE.figure > 0.01', 'figure <= 3' for any node; may be
-    /// given several times. The others go on; the exit code is 1.
+    /// A variant fails where what a node measured is beyond this limit, written as for maquette run: 'NODE.figure > 0.01',
+    /// 'max(table.column) > 1', 'warnings'; may be given several times. The others go on; the exit code is 1.
     #[arg(long, value_name = "LIMIT")]
     fail_if: Vec<String>,
+    /// Measure as well what is measured on request only: faults in the meshes of the results.
+    #[arg(long)]
+    report: bool,
     /// Keep the record of what is finished in this file. Without it, it is wedge.jsonl in the folder of the first
     /// --write, and none is kept where nothing is written.
     #[arg(long, value_name = "FILE")]

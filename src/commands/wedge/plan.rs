@@ -16,7 +16,7 @@ use super::values::Vary;
 use super::variants::{Axis, Combining, Variants};
 use crate::commands::evaluation::{Opened, open};
 use crate::commands::evaluation_order::{evaluation_order, linked_from};
-use crate::commands::fail_if::Limit;
+use crate::commands::fail_if::{self, Limit};
 use crate::commands::graph_file::GraphFile;
 use crate::commands::write;
 
@@ -28,9 +28,14 @@ pub(super) struct Plan {
     pub(super) variants: Variants,
     pub(super) patterns: Vec<Pattern>,
     pub(super) limits: Vec<Limit>,
+    /// Whether to measure as well what is measured on request only.
+    pub(super) examine: bool,
     pub(super) tables: Vec<(PathBuf, Form)>,
     /// Where the record is kept.
     pub(super) record: Option<PathBuf>,
+    /// What deserves a look in the file.
+    pub(super) file_warnings: Vec<String>,
+    /// The same, and what deserves a look in the arguments.
     pub(super) warnings: Vec<String>,
 }
 
@@ -38,10 +43,11 @@ impl Plan {
     pub(super) fn new(arguments: &Arguments) -> Result<Self, Vec<String>> {
         let catalogue = maquette_nodes::catalogue().map_err(|error| vec![format!("error: {error}")])?;
         let types = RefCell::new(Vec::new());
-        let Opened { file, targets, mut warnings } = open(&catalogue, &arguments.evaluation, |found| {
+        let Opened { file, targets, mut warnings, .. } = open(&catalogue, &arguments.evaluation, |found| {
             types.borrow_mut().extend_from_slice(found);
             Ok(())
         })?;
+        let file_warnings = warnings.clone();
         let variants = read_variants(arguments, &file)?;
         if variants.repeated > 0 {
             let (left, repeated) = (variants.len(), variants.repeated);
@@ -72,13 +78,27 @@ impl Plan {
                 keep(error);
             }
         }
+        wrong.extend(fail_if::refuse_unknown(&limits, &file.loaded.graph, &targets));
         if !wrong.is_empty() {
             return Err(wrong);
         }
+        let examine = arguments.report || !limits.is_empty();
         let formats: Vec<_> = patterns.iter().map(|pattern| (Path::new(&pattern.text), pattern.format)).collect();
         write::suits(&formats, &types.borrow())?;
         let record = record_place(arguments, &patterns);
-        let plan = Self { catalogue, file, targets, variants, patterns, limits, tables, record, warnings };
+        let plan = Self {
+            catalogue,
+            file,
+            targets,
+            variants,
+            patterns,
+            limits,
+            examine,
+            tables,
+            record,
+            file_warnings,
+            warnings,
+        };
         plan.check_files(arguments).map_err(|error| vec![error])?;
         Ok(plan.with_warnings())
     }
@@ -205,7 +225,8 @@ impl Plan {
         let name = |id: &NodeId| graph.node(*id).map_or("", |node| node.name()).to_owned();
         parts.push(self.targets.iter().map(name).collect::<Vec<_>>().join("\n"));
         parts.push(format!("keep going: {}", arguments.evaluation.keep_going));
-        parts.extend(self.limits.iter().map(|limit| limit.text().to_owned()));
+        parts.push(format!("examine: {}", self.examine));
+        parts.extend(self.limits.iter().map(Limit::to_string));
         parts.extend(self.file.files().map(|(_, _, path)| contents.hash(&path)));
         super::record::key(&parts.iter().map(String::as_str).collect::<Vec<_>>())
     }

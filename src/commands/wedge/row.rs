@@ -144,7 +144,7 @@ impl Row {
                 node: outcome.name.clone(),
                 name: figure.name.clone(),
                 value: figure.value,
-                unit: figure.unit.to_owned(),
+                unit: figure.unit.to_string(),
             })
         });
         self.figures = figures.collect();

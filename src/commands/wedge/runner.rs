@@ -11,8 +11,9 @@ use super::plan::Plan;
 use super::record::Record;
 use super::row::{FileRow, Row, State};
 use crate::commands::evaluation::{evaluator, messages};
+use crate::commands::fail_if::{self, Verdict};
 use crate::commands::progress_bar::Variants as Bar;
-use crate::commands::{console, fail_if, results, write};
+use crate::commands::{console, results, write};
 
 /// A wedge at work.
 pub(super) struct Runner<'a> {
@@ -53,8 +54,6 @@ impl<'a> Runner<'a> {
         let mut rows: Vec<Row> =
             (0..count).map(|variant| Row::unreached(variant + 1, self.plan.texts(variant), State::Stopped)).collect();
         let bar = Bar::new(!self.arguments.evaluation.quiet, count);
-        // A limit that no node measures is a mistake in the arguments; the first whole evaluation tells.
-        let mut limits_known = false;
         for variant in self.plan.variants.cheapest_order(&self.plan.costs()) {
             if self.cancel.is_cancelled() {
                 break;
@@ -73,12 +72,7 @@ impl<'a> Runner<'a> {
                 break;
             }
             let row = &mut rows[variant];
-            let unknown = self.judge(&evaluation, row);
-            if !unknown.is_empty() && !limits_known {
-                bar.finish();
-                return Err(unknown);
-            }
-            limits_known |= evaluation.is_complete();
+            self.judge(&evaluation, row);
             if row.state == State::Done || self.arguments.evaluation.keep_going {
                 self.write(&evaluation, variant, row);
             }
@@ -118,7 +112,7 @@ impl<'a> Runner<'a> {
 
     /// Puts the values of a variant into the graph, as far as they are not there, and evaluates.
     fn evaluate(&mut self, variant: usize) -> Result<Evaluation, Vec<String>> {
-        let Plan { variants, file, catalogue, targets, .. } = &mut self.plan;
+        let Plan { variants, file, catalogue, targets, examine, .. } = &mut self.plan;
         for (axis, (choice, current)) in variants.choice(variant).zip(&mut self.current).enumerate() {
             if *current != Some(choice) {
                 let axis = &variants.axes[axis];
@@ -132,6 +126,7 @@ impl<'a> Runner<'a> {
         // All that results depend on is asked for: what is remembered from the variant before has figures too.
         let asked = file.loaded.graph.upstream(targets);
         let request = Request::nodes(&asked).base(file.base()).cancel(self.cancel);
+        let request = if *examine { request.examine() } else { request };
         Ok(self.evaluator.evaluate(catalogue, &file.loaded.graph, &request))
     }
 
@@ -141,13 +136,14 @@ impl<'a> Runner<'a> {
         Ok((!evaluation.cancelled).then(|| results::scene(&evaluation, &self.plan.targets)))
     }
 
-    /// Measures an evaluation and says how it ended; returns what is said of limits on figures that nothing measures.
-    fn judge(&self, evaluation: &Evaluation, row: &mut Row) -> Vec<String> {
-        let Plan { file, targets, limits, .. } = &self.plan;
+    /// Measures an evaluation and says how it ended. A limit that there is nothing to hold against is not kept.
+    fn judge(&self, evaluation: &Evaluation, row: &mut Row) {
+        let Plan { file, targets, limits, file_warnings, .. } = &self.plan;
         row.measure(evaluation, targets);
         let (failures, warnings) = messages(file, targets, evaluation);
-        let verdict = fail_if::judge(limits, evaluation);
-        row.state = match (failures.is_empty(), verdict.exceeded.is_empty()) {
+        let Verdict { exceeded, unknown } = fail_if::judge(limits, evaluation, file_warnings);
+        let exceeded: Vec<String> = exceeded.into_iter().chain(unknown).collect();
+        row.state = match (failures.is_empty(), exceeded.is_empty()) {
             (false, _) => State::Failed,
             (true, false) => State::Exceeded,
             (true, true) => State::Done,
@@ -155,8 +151,7 @@ impl<'a> Runner<'a> {
         row.warnings = warnings;
         row.errors = failures;
         let path = file.path.display();
-        row.errors.extend(verdict.exceeded.iter().map(|message| format!("{path}: {message}")));
-        verdict.unknown
+        row.errors.extend(exceeded.iter().map(|message| format!("{path}: {message}")));
     }
 
     fn write(&self, evaluation: &Evaluation, variant: usize, row: &mut Row) {

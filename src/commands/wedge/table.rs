@@ -6,7 +6,7 @@ use std::path::Path;
 use serde_json::{Value as Json, json};
 
 use super::row::{Row, Size, State};
-use crate::commands::run::digits;
+use crate::commands::report_text::digits;
 
 /// The forms of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
