@@ -25,6 +25,9 @@
 //! Not kept are comments (use `notes` for the graph and `note` for a node), attributes, and all but the last of several
 //! values at one input or of several places of one node.
 
+mod body;
+mod include;
+mod interface;
 mod link;
 mod literal_text;
 mod place;
@@ -34,10 +37,11 @@ mod syntax;
 mod tree;
 mod write;
 
+pub use include::Includes;
 pub use literal_text::{LiteralError, parse_literal};
 pub(crate) use literal_text::{Spelled, parse};
 pub use problem::{FileError, Problem, Severity};
-pub use read::{Loaded, from_bytes, from_text};
+pub use read::{Loaded, from_bytes, from_bytes_with, from_text, from_text_with};
 pub use write::to_text;
 pub(crate) use write::{number, quoted, selection_to_text};
 
