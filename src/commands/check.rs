@@ -6,6 +6,7 @@ use maquette_graph::file::Severity;
 use maquette_graph::{Catalogue, Evaluator, OutcomeState, Request};
 
 use super::graph_file::GraphFile;
+use super::project::ProjectArguments;
 use super::{Ended, console};
 
 /// Load graphs and say everything that is wrong with them, each with place and remedy.
@@ -14,6 +15,8 @@ pub struct Arguments {
     /// Evaluate every node as well, and say which ones fail; without it nothing is evaluated.
     #[arg(long)]
     evaluate: bool,
+    #[command(flatten)]
+    project: ProjectArguments,
     /// The graphs, .ron files.
     #[arg(required = true)]
     graphs: Vec<PathBuf>,
@@ -30,7 +33,7 @@ pub fn check(arguments: &Arguments) -> Ended {
     };
     let mut ended = Ended::Done;
     for path in &arguments.graphs {
-        if !check_one(&catalogue, path, arguments.evaluate) {
+        if !check_one(&catalogue, path, arguments) {
             ended = Ended::Wrong;
         }
     }
@@ -38,14 +41,15 @@ pub fn check(arguments: &Arguments) -> Ended {
 }
 
 /// Whether the graph is sound.
-fn check_one(catalogue: &Catalogue, path: &Path, evaluate: bool) -> bool {
-    let file = match GraphFile::open(catalogue, path) {
+fn check_one(catalogue: &Catalogue, path: &Path, arguments: &Arguments) -> bool {
+    let mut file = match GraphFile::open(catalogue, path) {
         Ok(file) => file,
         Err(messages) => {
             messages.iter().for_each(console::remark);
             return false;
         }
     };
+    file.project = arguments.project.of(file.base());
     let graph = &file.loaded.graph;
     let mut errors = 0;
     let mut warnings = 0;
@@ -60,8 +64,9 @@ fn check_one(catalogue: &Catalogue, path: &Path, evaluate: bool) -> bool {
     let said: Vec<String> = file.missing_links(&all).into_iter().chain(file.missing_content()).collect();
     said.iter().for_each(console::remark);
     errors += said.len();
-    if evaluate {
-        let evaluation = Evaluator::default().evaluate(catalogue, graph, &Request::nodes(&all).base(file.base()));
+    if arguments.evaluate {
+        let request = Request::nodes(&all).base(file.base()).project(&file.project);
+        let evaluation = Evaluator::default().evaluate(catalogue, graph, &request);
         for (id, outcome) in evaluation.outcomes() {
             match &outcome.state {
                 OutcomeState::Failed(failure) => {

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 
 use maquette_graph::file::Severity;
 use maquette_graph::{
-    CancelToken, Catalogue, Evaluation, Evaluator, EvaluatorOptions, NodeId, OutcomeState, Request, WireType,
+    CancelToken, Catalogue, Evaluation, Evaluator, EvaluatorOptions, Literal, NodeId, OutcomeState, Request, WireType,
 };
 
 use super::graph_file::GraphFile;
 use super::progress_bar::Progress;
+use super::project::ProjectArguments;
 use super::{console, overrides};
 
 /// What is evaluated, and how.
@@ -23,6 +24,8 @@ pub struct EvaluationArguments {
     /// Put a value at an input for this evaluation, such as --set legs.count=32; may be given several times.
     #[arg(long = "set", value_name = "NODE.PORT=VALUE")]
     pub(super) set: Vec<String>,
+    #[command(flatten)]
+    pub(super) project: ProjectArguments,
     /// Threads, at most 256; 0 takes one per core. The number changes no result.
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u16).range(0..=256))]
     pub(super) threads: u16,
@@ -75,8 +78,19 @@ pub(super) fn open(
     suits: impl Fn(&[WireType]) -> Result<(), Vec<String>>,
 ) -> Result<Opened, Vec<String>> {
     let (mut file, warnings) = GraphFile::open_sound(catalogue, &arguments.graph)?;
-    let wrong: Vec<String> =
-        arguments.set.iter().filter_map(|set| overrides::apply(&mut file.loaded.graph, set).err()).collect();
+    file.project = arguments.project.of(file.base());
+    let mut wrong = Vec::new();
+    for set in &arguments.set {
+        match overrides::apply(&mut file.loaded.graph, set) {
+            // What the user named the user wants to be read.
+            Ok(Literal::File(path)) => {
+                let path = file.base().join(path);
+                file.project.allow(path);
+            }
+            Ok(_) => {}
+            Err(message) => wrong.push(message),
+        }
+    }
     if !wrong.is_empty() {
         let path = file.path.display();
         return Err(wrong.into_iter().map(|message| format!("{path}: error: {message}")).collect());
@@ -123,7 +137,7 @@ impl Opened {
         let graph = &file.loaded.graph;
         let progress = Progress::new(!quiet);
         let asked = if keep == Keep::Everything { graph.upstream(&targets) } else { targets.clone() };
-        let request = Request::nodes(&asked).events(&progress).base(file.base()).cancel(cancel);
+        let request = Request::nodes(&asked).events(&progress).base(file.base()).project(&file.project).cancel(cancel);
         let evaluation = evaluator.evaluate(catalogue, graph, &request);
         progress.finish();
         let mut failures = Vec::new();

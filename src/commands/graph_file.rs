@@ -1,8 +1,9 @@
 //! A graph as it lies on disk.
 
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-use maquette_graph::file::{self, Loaded, Problem, Severity};
+use maquette_graph::file::{self, Loaded, Problem, Project, Severity};
 use maquette_graph::{Catalogue, Literal, NodeId, Source};
 
 /// A graph with the file it came from.
@@ -11,6 +12,8 @@ pub(super) struct GraphFile {
     /// What stands in the file.
     pub(super) text: String,
     pub(super) loaded: Loaded,
+    /// The files that it may read.
+    pub(super) project: Project,
 }
 
 /// Why a graph could not be opened: what was said about it, for `--json`.
@@ -20,7 +23,11 @@ impl GraphFile {
     /// Reads a graph; what is wrong with it is in its problems.
     pub(super) fn open(catalogue: &Catalogue, path: &Path) -> Result<Self, Refused> {
         let name = path.display();
-        let bytes = std::fs::read(path).map_err(|error| {
+        // One byte more than a graph may have is enough to refuse it.
+        let read = |mut bytes: Vec<u8>| {
+            std::fs::File::open(path)?.take(file::MOST_BYTES as u64 + 1).read_to_end(&mut bytes).map(|_| bytes)
+        };
+        let bytes = read(Vec::new()).map_err(|error: std::io::Error| {
             let reason = match error.kind() {
                 std::io::ErrorKind::NotFound => "there is no such file: check the path".to_owned(),
                 _ => format!("it can't be read: {error}"),
@@ -35,7 +42,7 @@ impl GraphFile {
         let name = path.display();
         let loaded = file::from_bytes(catalogue, &bytes).map_err(|error| vec![format!("{name}:{error}")])?;
         let text = String::from_utf8(bytes).map_err(|_| vec![format!("{name}: error: the file is not UTF-8 text")])?;
-        Ok(Self { path: path.to_owned(), text, loaded })
+        Ok(Self { path: path.to_owned(), text, loaded, project: Project::of_graph(path) })
     }
 
     /// Reads a graph that is to be evaluated, with its warnings; refuses it where something is wrong.
@@ -95,7 +102,8 @@ impl GraphFile {
         })
     }
 
-    /// Files that the graph names and that are not there, and files and sketches that it leaves empty.
+    /// Files that the graph names and that are not there or must not be read, and files and sketches that it leaves
+    /// empty.
     pub(super) fn missing_content(&self) -> Vec<String> {
         let mut missing = Vec::new();
         for (id, node) in self.loaded.graph.nodes() {
@@ -107,8 +115,13 @@ impl GraphFile {
                 };
                 let message = match literal {
                     Some(Literal::File(path)) if path.is_empty() => "no file is named; give a path".to_owned(),
-                    Some(Literal::File(path)) if !self.base().join(path).is_file() => {
-                        format!("the file {} does not exist", self.base().join(path).display())
+                    Some(Literal::File(path)) => {
+                        let path = self.base().join(path);
+                        match self.project.check(&path) {
+                            Err(outside) => outside.to_string(),
+                            Ok(()) if path.is_file() => continue,
+                            Ok(()) => format!("the file {} does not exist", path.display()),
+                        }
                     }
                     Some(Literal::Strokes(strokes)) if strokes.is_empty() => {
                         "there are no strokes; draw some, or remove the node".to_owned()

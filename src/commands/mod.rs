@@ -14,6 +14,7 @@ mod hashes;
 pub mod nodes;
 mod overrides;
 mod progress_bar;
+mod project;
 pub mod render;
 mod results;
 pub mod run;

@@ -3,11 +3,11 @@
 use maquette_graph::file::parse_literal;
 use maquette_graph::{Graph, Literal, LiteralKind};
 
-/// Puts a value given on the command line into the graph.
+/// Puts a value given on the command line into the graph, and gives it as it was understood.
 ///
 /// Texts, choices and files are written bare, vectors and colours as numbers separated by commas; anything may also be
 /// written as in a graph file. A relative path starts at the current folder.
-pub(super) fn apply(graph: &mut Graph, assignment: &str) -> Result<(), String> {
+pub(super) fn apply(graph: &mut Graph, assignment: &str) -> Result<Literal, String> {
     let fail = |reason: String| format!("--set {assignment}: {reason}");
     let (address, value) = assignment.split_once('=').ok_or_else(|| fail("write it as NODE.PORT=VALUE".to_owned()))?;
     let (name, port) = address.rsplit_once('.').ok_or_else(|| fail("write it as NODE.PORT=VALUE".to_owned()))?;
@@ -23,7 +23,8 @@ pub(super) fn apply(graph: &mut Graph, assignment: &str) -> Result<(), String> {
     let wanted = LiteralKind::of_wire(spec.wire)
         .ok_or_else(|| fail(format!("the input takes {} from a link; a value can't be given", spec.wire)))?;
     let literal = literal(wanted, value).map_err(fail)?;
-    graph.set(node, port, literal).map_err(|error| fail(error.to_string()))
+    graph.set(node, port, literal.clone()).map_err(|error| fail(error.to_string()))?;
+    Ok(literal)
 }
 
 fn literal(wanted: LiteralKind, value: &str) -> Result<Literal, String> {

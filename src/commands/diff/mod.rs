@@ -17,6 +17,7 @@ use self::differences::{Difference, differences};
 use self::geometry::OutputDifference;
 use self::pairing::{Pairing, pair};
 use super::graph_file::GraphFile;
+use super::project::ProjectArguments;
 use super::{Ended, console};
 
 /// Say what differs between two graphs: nodes added, removed and renamed, links, values and strokes. The order within
@@ -41,6 +42,8 @@ pub struct Arguments {
     /// Relative paths within both graphs start at this folder, not at their own; for a copy that lies elsewhere.
     #[arg(long, value_name = "FOLDER")]
     base: Option<PathBuf>,
+    #[command(flatten)]
+    project: ProjectArguments,
     /// For git's diff.NAME.command: the arguments that git gives, PATH OLD-FILE OLD-HEX OLD-MODE NEW-FILE NEW-HEX
     /// NEW-MODE. Always exits with 0, because git takes all else for a breakdown.
     #[arg(long, num_args = 1..=9, value_name = "ARGUMENTS", allow_hyphen_values = true)]
@@ -145,7 +148,7 @@ fn compare(
     };
     let pairing = pair(&a.loaded.graph, &b.loaded.graph);
     let differences = differences(&a.loaded.graph, &b.loaded.graph, &pairing, arguments.layout);
-    let outputs = if arguments.geometry { compare_results(catalogue, [&a, &b], &pairing, base)? } else { Vec::new() };
+    let outputs = if arguments.geometry { compare_results(catalogue, arguments, [&a, &b], &pairing, base)? } else { Vec::new() };
     Ok(Comparison { differences, outputs })
 }
 
@@ -159,14 +162,15 @@ fn open(catalogue: &Catalogue, path: &Path) -> Result<GraphFile, Vec<String>> {
 
 fn compare_results(
     catalogue: &Catalogue,
+    arguments: &Arguments,
     [a, b]: [&GraphFile; 2],
     pairing: &Pairing,
     base: Option<&Path>,
 ) -> Result<Vec<OutputDifference>, Vec<String>> {
     // What both graphs have in common is computed once.
     let mut evaluator = Evaluator::default();
-    let from = evaluate(catalogue, &mut evaluator, a, base)?;
-    let to = evaluate(catalogue, &mut evaluator, b, base)?;
+    let from = evaluate(catalogue, arguments, &mut evaluator, a, base)?;
+    let to = evaluate(catalogue, arguments, &mut evaluator, b, base)?;
     let name = |file: &GraphFile, id: NodeId| file.loaded.graph.node(id).map_or("", |n| n.name()).to_owned();
     let value = |evaluation: &Evaluation, id: NodeId| evaluation.values(id).and_then(|v| v.first().cloned());
     let [first, second] = [a, b].map(|file| file.loaded.graph.results());
@@ -194,6 +198,7 @@ fn compare_results(
 /// Evaluates all results; where one can't be made there is nothing to measure, and the reason is the error.
 fn evaluate(
     catalogue: &Catalogue,
+    arguments: &Arguments,
     evaluator: &mut Evaluator,
     file: &GraphFile,
     base: Option<&Path>,
@@ -210,7 +215,8 @@ fn evaluate(
     if !wrong.is_empty() || !missing.is_empty() {
         return Err(wrong.into_iter().chain(missing).collect());
     }
-    let request = Request::nodes(&results).base(base.unwrap_or(file.base()));
+    let base = base.unwrap_or(file.base());
+    let request = Request::nodes(&results).base(base).project(&arguments.project.of(base));
     let evaluation = evaluator.evaluate(catalogue, &file.loaded.graph, &request);
     let failures: Vec<String> = evaluation
         .outcomes()

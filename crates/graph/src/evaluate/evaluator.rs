@@ -14,6 +14,7 @@ use crate::evaluate::memo::{Entry, Memo};
 use crate::evaluate::plan::{Found, Plan, Planner};
 use crate::evaluate::run::{Ended, Runner};
 use crate::evaluate::{CancelToken, Event, EventKind, Events};
+use crate::file::Project;
 use crate::graph::{Graph, Node, NodeId};
 use crate::value::KeyHasherBuilder;
 
@@ -42,12 +43,13 @@ pub struct Request<'a> {
     events: &'a dyn Events,
     cancel: CancelToken,
     base: PathBuf,
+    project: Option<Project>,
 }
 
 impl<'a> Request<'a> {
     /// Asks for the results of these nodes and, through them, of what they depend on.
     pub fn nodes(targets: &[NodeId]) -> Self {
-        Self { targets: targets.to_vec(), events: &(), cancel: CancelToken::new(), base: PathBuf::new() }
+        Self { targets: targets.to_vec(), events: &(), cancel: CancelToken::new(), base: PathBuf::new(), project: None }
     }
 
     /// Listens to what happens.
@@ -66,6 +68,13 @@ impl<'a> Request<'a> {
     #[must_use]
     pub fn base(self, base: impl AsRef<Path>) -> Self {
         Self { base: base.as_ref().to_owned(), ..self }
+    }
+
+    /// The nodes may read the files of this project. Without one they may read what lies below [`Request::base`], which
+    /// is the current folder where none is given.
+    #[must_use]
+    pub fn project(self, project: &Project) -> Self {
+        Self { project: Some(project.clone()), ..self }
     }
 }
 
@@ -135,7 +144,7 @@ impl Evaluator {
     pub fn evaluate(&mut self, catalogue: &Catalogue, graph: &Graph, request: &Request<'_>) -> Evaluation {
         let begun = Instant::now();
         self.evaluations += 1;
-        self.files.begin();
+        self.files.begin(request.project.clone().unwrap_or_else(|| Project::within(&request.base)));
         self.sync(graph, request);
         let planner = Planner { catalogue, graph, memo: &self.memo, base: &request.base, files: &self.files };
         let plan = planner.plan(&request.targets, |id| self.slots.get(id.index()).and_then(|slot| slot.key.clone()));

@@ -25,18 +25,24 @@
 //! Not kept are comments (use `notes` for the graph and `note` for a node), attributes, and all but the last of several
 //! values at one input or of several places of one node.
 
+mod disk;
+mod limit;
 mod link;
 mod literal_text;
 mod place;
 mod problem;
+mod project;
 mod read;
 mod syntax;
 mod tree;
 mod write;
 
+pub use disk::{OpenError, SaveError, open, save, write_whole};
+pub use limit::MOST_BYTES;
 pub use literal_text::{LiteralError, parse_literal};
 pub(crate) use literal_text::{Spelled, parse};
 pub use problem::{FileError, Problem, Severity};
+pub use project::{Outside, Project};
 pub use read::{Loaded, from_bytes, from_text};
 pub(crate) use write::selection_to_text;
 pub use write::to_text;
