@@ -188,9 +188,15 @@ impl Catalogue {
     }
 }
 
+/// Bytes of the longest name that others are compared with.
+const LONGEST_COMPARED: usize = 80;
+
 /// The candidate most like a misspelt name, where one is alike enough to be meant.
 pub(crate) fn closest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    // Names are short; to compare two long texts takes the product of their lengths.
+    let comparable = |text: &str| text.len() <= LONGEST_COMPARED;
     candidates
+        .filter(|candidate| comparable(name) && comparable(candidate))
         .map(|candidate| (strsim::jaro_winkler(name, candidate), candidate))
         .filter(|(likeness, _)| *likeness > 0.75)
         .max_by(|a, b| a.0.total_cmp(&b.0))

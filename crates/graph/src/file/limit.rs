@@ -1,4 +1,72 @@
-//! How large a graph's file may be.
+//! How large a graph's file may be: reading one takes less than 100 MB of memory, whatever its bytes are.
+//!
+//! A few bytes can ask for much: `1:(),` is a node. What a file asks for is added up while it is taken apart, before
+//! anything is built, with what each piece costs at worst.
 
-/// Bytes of the largest file that is read, 16 MiB: some hundred thousand nodes' worth of text, or as many points of strokes.
+use std::cell::Cell;
+
+/// Bytes of the largest file that is read, 16 MiB.
 pub const MOST_BYTES: usize = 16 << 20;
+
+/// What the parts of a file may ask for together, in bytes. The rest of 100 MB is for its text and for what is said about
+/// it.
+const BUDGET: usize = 60_000_000;
+
+/// Most problems that are listed one by one, and the most bytes they may take together.
+pub(super) const MOST_PROBLEMS: usize = 10_000;
+pub(super) const MOST_PROBLEM_BYTES: usize = 12_000_000;
+
+/// Longest piece of a file that a message repeats, in characters.
+const LONGEST_QUOTE: usize = 200;
+
+/// What pieces cost at worst, in bytes: in the tree, in the graph, and in the places that are remembered.
+pub(super) const NODE: usize = 900;
+pub(super) const FIRST_INPUT: usize = 1_500;
+pub(super) const ENTRY: usize = 300;
+/// A point of a stroke begins with a bracket; it is there as a literal and as a value, while lists grow.
+const BRACKET: usize = 112;
+/// A text is there as a literal and as a value, or as it was.
+const BYTE: usize = 3;
+
+/// Adds up what a file asks for.
+#[derive(Debug)]
+pub(super) struct Meter {
+    left: Cell<usize>,
+    is_exceeded: Cell<bool>,
+}
+
+impl Default for Meter {
+    fn default() -> Self {
+        Self { left: Cell::new(BUDGET), is_exceeded: Cell::new(false) }
+    }
+}
+
+impl Meter {
+    /// Takes what a piece costs; `false` where that is no longer there.
+    pub(super) fn take(&self, cost: usize) -> bool {
+        match self.left.get().checked_sub(cost) {
+            Some(left) => self.left.set(left),
+            None => self.is_exceeded.set(true),
+        }
+        !self.is_exceeded.get()
+    }
+
+    /// As [`Meter::take`] for a piece of text that may become anything.
+    pub(super) fn take_text(&self, text: &str) -> bool {
+        let brackets = text.bytes().filter(|byte| *byte == b'(').count();
+        self.take(ENTRY + BYTE * text.len() + BRACKET * brackets)
+    }
+
+    /// Whether more was asked for than there is.
+    pub(super) fn is_exceeded(&self) -> bool {
+        self.is_exceeded.get()
+    }
+}
+
+/// What a file calls something, as a message repeats it: not more of it than can be read.
+pub(super) fn quoted_in_message(name: &str) -> String {
+    match name.char_indices().nth(LONGEST_QUOTE) {
+        None => name.to_owned(),
+        Some((end, _)) => format!("{}...", name.get(..end).unwrap_or_default()),
+    }
+}

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use ron::value::RawValue;
 
 use crate::catalogue::closest;
+use crate::file::limit::quoted_in_message;
 use crate::file::read::Reader;
 use crate::file::tree::trimmed;
 use crate::graph::{ConnectError, Link, NodeId, Source};
@@ -20,21 +21,22 @@ pub(super) struct PendingLink<'a> {
 /// Similar names, found once for each misspelt name and not for too many of them: every search compares all names.
 pub(super) struct Suggestions {
     known: HashMap<String, Option<String>>,
+    /// How many names may still be compared.
     left: usize,
 }
 
 impl Default for Suggestions {
     fn default() -> Self {
-        Self { known: HashMap::new(), left: 100 }
+        Self { known: HashMap::new(), left: 300_000 }
     }
 }
 
 impl Suggestions {
-    fn get(&mut self, name: &str, search: impl FnOnce() -> Option<String>) -> Option<String> {
+    fn get(&mut self, name: &str, names: usize, search: impl FnOnce() -> Option<String>) -> Option<String> {
         if let Some(known) = self.known.get(name) {
             return known.clone();
         }
-        self.left = self.left.checked_sub(1)?;
+        self.left = self.left.checked_sub(names)?;
         let found = search();
         self.known.insert(name.to_owned(), found.clone());
         found
@@ -67,15 +69,16 @@ impl<'a> Reader<'a> {
         let Some((node, name, output)) = by_name.or_else(by_last) else {
             match address.rsplit_once('.') {
                 None => {
-                    let message = format!("\"{address}\" is not an address");
+                    let message = format!("\"{}\" is not an address", quoted_in_message(address));
                     self.refuse(link, message, "write Link(\"node.output\")");
                 }
                 Some((name, _)) => {
                     let graph = &self.graph;
-                    let remedy = match self.suggestions.get(name, || graph.suggest(name).map(str::to_owned)) {
+                    let remedy = match self.suggestions.get(name, graph.nodes().len(), || graph.suggest(name).map(str::to_owned)) {
                         Some(suggestion) => format!("did you mean \"{suggestion}\"?"),
                         None => "add the node, or remove the link".to_owned(),
                     };
+                    let name = quoted_in_message(name);
                     self.refuse(link, format!("it is linked to \"{name}\", and no node has that name"), &remedy);
                 }
             }

@@ -53,7 +53,7 @@ pub fn parse_literal(text: &str) -> Result<Literal, LiteralError> {
 pub(crate) fn parse(text: &str) -> Result<Spelled, LiteralError> {
     let text = text.trim();
     let fail = |error: ron::error::SpannedError| LiteralError {
-        offset: LineIndex::new(text).byte(text, error.span.start.line, error.span.start.col),
+        offset: LineIndex::new(text).byte(error.span.start.line, error.span.start.col),
         message: format!("{}; {EXPECTED}", in_words(&error.code)),
     };
     let literal = match text.chars().next() {

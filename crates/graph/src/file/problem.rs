@@ -65,6 +65,19 @@ pub enum FileError {
         /// Column of the first bad byte, counted from 1.
         column: usize,
     },
+    /// It would take more memory than a graph may.
+    #[error(
+        "{line}:{column}: error: the graph is too large: {what}; divide it into several, or keep long curves and meshes \
+         in files of their own"
+    )]
+    TooLarge {
+        /// Line at which it becomes too large, counted from 1.
+        line: usize,
+        /// Column, counted from 1.
+        column: usize,
+        /// What is too much.
+        what: String,
+    },
     /// Not a graph in RON.
     #[error("{line}:{column}: error: {}; {remedy}", one_line(.message))]
     Syntax {

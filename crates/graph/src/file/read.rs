@@ -9,7 +9,8 @@ use crate::file::link::{PendingLink, Suggestions};
 use crate::file::literal_text::{Spelled, parse};
 use crate::file::place::LineIndex;
 use crate::file::syntax::{attributes, syntax_error};
-use crate::file::tree::{FileTree, NodeTree, trimmed};
+use crate::file::limit::{MOST_BYTES, MOST_PROBLEM_BYTES, MOST_PROBLEMS, Meter, quoted_in_message};
+use crate::file::tree::{FileTree, NodeTree, take_apart, trimmed};
 use crate::file::{FORMAT_VERSION, FileError, Problem, Severity};
 use crate::graph::{Graph, GraphError, NodeId, Source};
 use crate::value::KeyHasherBuilder;
@@ -27,7 +28,8 @@ pub struct Loaded {
 #[derive(Debug, Default)]
 struct Place {
     at: (usize, usize),
-    inputs: BTreeMap<String, (usize, usize)>,
+    /// In the order of the file.
+    inputs: Vec<(String, (usize, usize))>,
 }
 
 impl Loaded {
@@ -39,7 +41,9 @@ impl Loaded {
     /// Line and column of a node, or of one of its inputs where the file has it.
     pub fn place(&self, node: NodeId, input: Option<&str>) -> Option<(usize, usize)> {
         let place = self.places.get(&node)?;
-        Some(input.and_then(|i| place.inputs.get(i)).copied().unwrap_or(place.at))
+        // Of an input that occurs twice, the last one counts.
+        let input = input.and_then(|wanted| place.inputs.iter().rev().find(|(input, _)| input == wanted));
+        Some(input.map_or(place.at, |(_, at)| *at))
     }
 }
 
@@ -49,6 +53,9 @@ impl Loaded {
 /// Only where nothing can be read: not UTF-8, not RON, not shaped like a graph. Everything else is in
 /// [`Loaded::problems`].
 pub fn from_bytes(catalogue: &Catalogue, bytes: &[u8]) -> Result<Loaded, FileError> {
+    if bytes.len() > MOST_BYTES {
+        return Err(too_long(bytes.len()));
+    }
     match std::str::from_utf8(bytes) {
         Ok(text) => from_text(catalogue, text),
         Err(error) => {
@@ -60,6 +67,11 @@ pub fn from_bytes(catalogue: &Catalogue, bytes: &[u8]) -> Result<Loaded, FileErr
     }
 }
 
+fn too_long(bytes: usize) -> FileError {
+    let what = format!("it has {bytes} bytes or more, and {MOST_BYTES} are the most that is read");
+    FileError::TooLarge { line: 1, column: 1, what }
+}
+
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// Reads a graph from text.
@@ -68,8 +80,19 @@ const BYTE_ORDER_MARK: char = '\u{feff}';
 /// As [`from_bytes`].
 pub fn from_text(catalogue: &Catalogue, text: &str) -> Result<Loaded, FileError> {
     let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
+    if text.len() > MOST_BYTES {
+        return Err(too_long(text.len()));
+    }
     let lines = LineIndex::new(text);
-    let tree: FileTree<'_> = ron::from_str(text).map_err(|error| syntax_error(text, &lines, &error))?;
+    let meter = Meter::default();
+    let tree = take_apart(text, &meter).map_err(|error| {
+        if meter.is_exceeded() {
+            let (line, column) = lines.place(lines.byte(error.span.start.line, error.span.start.col));
+            let what = "its nodes, values and points take more than 100 MB to read".to_owned();
+            return FileError::TooLarge { line, column, what };
+        }
+        syntax_error(text, &lines, &error)
+    })?;
     let mut reader = Reader {
         catalogue,
         text,
@@ -77,25 +100,35 @@ pub fn from_text(catalogue: &Catalogue, text: &str) -> Result<Loaded, FileError>
         graph: Graph::new(),
         suggestions: Suggestions::default(),
         problems: Vec::new(),
+        problem_bytes: 0,
+        left_out: [0, 0],
         places: HashMap::default(),
         links: Vec::new(),
+        inputs: BTreeMap::new(),
         kept_as: HashMap::new(),
         next_number: HashMap::new(),
     };
     reader.read(&tree);
     reader.problems.sort_by_key(|p| (p.line, p.column));
+    reader.say_what_was_left_out();
     Ok(Loaded { graph: reader.graph, problems: reader.problems, places: reader.places })
 }
 
 pub(super) struct Reader<'a> {
     pub(super) catalogue: &'a Catalogue,
     text: &'a str,
-    lines: LineIndex,
+    lines: LineIndex<'a>,
     pub(super) graph: Graph,
     pub(super) suggestions: Suggestions,
     problems: Vec<Problem>,
+    problem_bytes: usize,
+    /// Errors and warnings that are not in `problems`, because there are too many.
+    left_out: [usize; 2],
     places: HashMap<NodeId, Place, KeyHasherBuilder>,
-    links: Vec<PendingLink<'a>>,
+    /// In the order of the file; `None` where another value at the same input took its place.
+    links: Vec<Option<PendingLink<'a>>>,
+    /// The inputs of the node that is read: where each has its link, if it is one.
+    inputs: BTreeMap<String, Option<usize>>,
     /// Nodes whose names can't be names, by what the file calls them.
     kept_as: HashMap<String, NodeId>,
     /// The number to try next for nodes that are kept under another name.
@@ -114,17 +147,28 @@ impl<'a> Reader<'a> {
     }
 
     fn report(&mut self, severity: Severity, at: usize, node: Option<&str>, port: Option<&str>, what: [String; 2]) {
-        let (line, column) = self.lines.place(at);
         let [message, remedy] = what;
-        self.problems.push(Problem {
-            severity,
-            line,
-            column,
-            node: node.map(str::to_owned),
-            port: port.map(str::to_owned),
-            message,
-            remedy,
-        });
+        let (node, port) = (node.map(quoted_in_message), port.map(quoted_in_message));
+        let names = [&node, &port].map(|name| name.as_ref().map_or(0, String::len));
+        self.problem_bytes += size_of::<Problem>() + message.len() + remedy.len() + names[0] + names[1];
+        if self.problems.len() >= MOST_PROBLEMS || self.problem_bytes > MOST_PROBLEM_BYTES {
+            self.left_out[usize::from(severity == Severity::Warning)] += 1;
+            return;
+        }
+        let (line, column) = self.lines.place(at);
+        self.problems.push(Problem { severity, line, column, node, port, message, remedy });
+    }
+
+    /// Says how many problems are not listed.
+    fn say_what_was_left_out(&mut self) {
+        let (line, column) = self.lines.place(self.text.len());
+        for (severity, count) in [Severity::Error, Severity::Warning].into_iter().zip(self.left_out) {
+            if count > 0 {
+                let message = format!("{count} more of this kind are not listed");
+                let remedy = "mend what is listed first".to_owned();
+                self.problems.push(Problem { severity, line, column, node: None, port: None, message, remedy });
+            }
+        }
     }
 
     pub(super) fn error(&mut self, at: usize, node: Option<&str>, port: Option<&str>, message: String, remedy: &str) {
@@ -164,7 +208,7 @@ impl<'a> Reader<'a> {
     }
 
     fn read(&mut self, tree: &FileTree<'a>) {
-        if let Some(at) = attributes(self.text, tree) {
+        if let Some(at) = attributes(self.text) {
             let message = "the attribute #![...] has no meaning in a graph".to_owned();
             self.warning(at, None, message, "remove it; it is not kept");
         }
@@ -182,7 +226,7 @@ impl<'a> Reader<'a> {
                 }
             }
         }
-        let links = std::mem::take(&mut self.links);
+        let links: Vec<_> = std::mem::take(&mut self.links).into_iter().flatten().collect();
         self.connect_all(&links);
         self.layout(tree);
         for (name, raw) in &tree.unknown {
@@ -193,7 +237,7 @@ impl<'a> Reader<'a> {
     }
 
     fn unknown_field(&mut self, node: Option<&str>, field: &str, piece: &str) {
-        let message = format!("the field \"{field}\" is unknown to this version");
+        let message = format!("the field \"{}\" is unknown to this version", quoted_in_message(field));
         let at = self.offset(piece);
         // RON gives the name without its place; it stands before the value, but for a comment between them.
         let before = self.text.get(..at).and_then(|text| text.trim_end().strip_suffix(':'));
@@ -210,7 +254,9 @@ impl<'a> Reader<'a> {
         let piece = trimmed(raw);
         let at = self.offset(piece);
         let (message, remedy) = match ron::from_str::<u32>(piece) {
-            Err(_) | Ok(0) => (format!("the version {piece} is not a whole number from 1 on"), "write 1"),
+            Err(_) | Ok(0) => {
+                (format!("the version {} is not a whole number from 1 on", quoted_in_message(piece)), "write 1")
+            }
             Ok(version) if version > FORMAT_VERSION => {
                 let known = FORMAT_VERSION;
                 (format!("the file has format version {version}, and this Maquette reads {known}"), "update Maquette")
@@ -232,13 +278,15 @@ impl<'a> Reader<'a> {
         let spelled = self.field(tree.kind, Some(&wanted), "kind", &mut kept);
         let kind = spelled.clone().unwrap_or_default();
         let Some(id) = self.insert(&kind, &wanted, name_at) else { return };
-        self.places.insert(id, Place { at: self.lines.place(name_at), inputs: BTreeMap::new() });
+        self.places.insert(id, Place { at: self.lines.place(name_at), inputs: Vec::new() });
+        self.inputs.clear();
         if spelled.is_some() && self.catalogue.kind(&kind).is_none() {
             let at = tree.kind.map_or(name_at, |raw| self.offset(trimmed(raw)));
             let remedy = match self.catalogue.suggest(&kind) {
                 Some(suggestion) => format!("did you mean \"{suggestion}\"? `maquette nodes` lists all kinds"),
                 None => "`maquette nodes` lists all kinds; a newer version may have it".to_owned(),
             };
+            let kind = quoted_in_message(&kind);
             self.error(at, Some(&wanted), None, format!("the node kind \"{kind}\" is unknown"), &remedy);
         }
         let note = self.field(tree.note, Some(&wanted), "note", &mut kept).unwrap_or_default();
@@ -279,6 +327,10 @@ impl<'a> Reader<'a> {
         if matches!(error, GraphError::BadName(_)) {
             self.kept_as.entry(wanted.to_owned()).or_insert(id);
         }
+        let error = match error {
+            GraphError::BadName(name) => GraphError::BadName(quoted_in_message(&name)),
+            other => other,
+        };
         self.error(name_at, Some(wanted), None, error.to_string(), &format!("it is kept as \"{kept}\""));
         Some(id)
     }
@@ -297,14 +349,15 @@ impl<'a> Reader<'a> {
         let piece = trimmed(raw);
         let at = self.offset(piece);
         let place = self.lines.place(at);
-        let known_place = self.places.get_mut(&id).and_then(|p| p.inputs.insert(input.clone(), place));
-        if known_place.is_some() {
+        if let Some(known) = self.places.get_mut(&id) {
+            known.inputs.push((input.clone(), place));
+        }
+        if let Some(earlier) = self.inputs.insert(input.clone(), None) {
             let message = "the input occurs twice".to_owned();
             self.error(name_at, Some(node), Some(&input), message, "keep one; the last one is used");
             // Links come after all literals, so an earlier one would win.
-            let earlier = self.links.iter().rposition(|link| link.to == id && link.input == input);
-            if let Some(earlier) = earlier {
-                self.links.remove(earlier);
+            if let Some(earlier) = earlier.and_then(|index| self.links.get_mut(index)) {
+                *earlier = None;
             }
         }
         let kind = self.graph.node(id).and_then(|n| n.kind().cloned());
@@ -320,7 +373,10 @@ impl<'a> Reader<'a> {
         }
         let mut unread = None;
         match (parse(piece), spec) {
-            (Ok(Spelled::Link(address)), _) => self.links.push(PendingLink { to: id, input, address, raw }),
+            (Ok(Spelled::Link(address)), _) => {
+                self.inputs.insert(input.clone(), Some(self.links.len()));
+                self.links.push(Some(PendingLink { to: id, input, address, raw }));
+            }
             // What an unknown input means is not known either: its text stays, digit for digit.
             (_, None) => drop(self.graph.put(id, &input, Some(Source::Unread(piece.to_owned())))),
             (Ok(Spelled::Literal(literal)), Some(spec)) => match spec.refuses(&literal) {
@@ -348,13 +404,13 @@ impl<'a> Reader<'a> {
                 (Some(id), Some((x, y))) => {
                     let place = self.graph.nodes.get_mut(&id).map(|node| &mut node.position);
                     if place.and_then(|place| place.replace([x, y])).is_some() {
-                        let message = format!("the layout places \"{name}\" twice");
+                        let message = format!("the layout places \"{}\" twice", quoted_in_message(&name));
                         self.warning(at, None, message, "keep one; the last one is used");
                     }
                     continue;
                 }
-                (None, _) => format!("the layout places \"{name}\", and no node has that name"),
-                (Some(_), None) => format!("the layout of \"{name}\" is not two numbers (x, y)"),
+                (None, _) => format!("the layout places \"{}\", and no node has that name", quoted_in_message(&name)),
+                (Some(_), None) => format!("the layout of \"{}\" is not two numbers (x, y)", quoted_in_message(&name)),
             };
             self.graph.unknown_layout.push((name, piece.to_owned()));
             self.warning(at, None, message, "it is kept");

@@ -2,11 +2,13 @@
 //! file are known because they are slices of it.
 
 use std::fmt;
-use std::marker::PhantomData;
 
+use ron::error::SpannedResult;
 use ron::value::RawValue;
 use serde::Deserialize;
-use serde::de::{Deserializer, Error as _, MapAccess, Visitor};
+use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, Visitor};
+
+use crate::file::limit::{FIRST_INPUT, Meter, NODE};
 
 /// Fields with a name, in the order of the file.
 pub(super) type Fields<'a> = Vec<(String, &'a RawValue)>;
@@ -34,9 +36,33 @@ pub(super) struct NodeTree<'a> {
 #[derive(Debug)]
 pub(super) struct Entries<'a, V>(pub(super) Vec<(&'a RawValue, V)>);
 
-struct FileVisitor;
+/// Takes a file apart.
+///
+/// # Errors
+/// It is not RON or not shaped like a graph, or it asks for more than the meter has, which then says so.
+pub(super) fn take_apart<'a>(text: &'a str, meter: &Meter) -> SpannedResult<FileTree<'a>> {
+    let mut deserializer = ron::Deserializer::from_str(text)?;
+    let tree = FileSeed(meter).deserialize(&mut deserializer);
+    let tree = tree.and_then(|tree| deserializer.end().map(|()| tree));
+    tree.map_err(|error| deserializer.span_error(error))
+}
 
-impl<'de> Visitor<'de> for FileVisitor {
+/// A piece of text that the meter has room for.
+#[derive(Clone, Copy)]
+struct Piece<'m>(&'m Meter);
+
+impl<'de> DeserializeSeed<'de> for Piece<'_> {
+    type Value = &'de RawValue;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<&'de RawValue, D::Error> {
+        let piece = <&RawValue>::deserialize(deserializer)?;
+        if self.0.take_text(piece.get_ron()) { Ok(piece) } else { Err(D::Error::custom("too much")) }
+    }
+}
+
+struct FileSeed<'m>(&'m Meter);
+
+impl<'de> Visitor<'de> for FileSeed<'_> {
     type Value = FileTree<'de>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -47,11 +73,11 @@ impl<'de> Visitor<'de> for FileVisitor {
         let mut tree = FileTree::default();
         while let Some(name) = map.next_key::<String>()? {
             match name.as_str() {
-                "version" => once(&mut tree.version, &name, &mut map)?,
-                "notes" => once(&mut tree.notes, &name, &mut map)?,
-                "nodes" => once(&mut tree.nodes, &name, &mut map)?,
-                "layout" => once(&mut tree.layout, &name, &mut map)?,
-                _ => tree.unknown.push((name, map.next_value()?)),
+                "version" => once(&mut tree.version, &name, &mut map, Piece(self.0))?,
+                "notes" => once(&mut tree.notes, &name, &mut map, Piece(self.0))?,
+                "nodes" => once(&mut tree.nodes, &name, &mut map, EntriesSeed(self.0, NodeSeed(self.0)))?,
+                "layout" => once(&mut tree.layout, &name, &mut map, EntriesSeed(self.0, Piece(self.0)))?,
+                _ => tree.unknown.push((name, map.next_value_seed(Piece(self.0))?)),
             }
         }
         Ok(tree)
@@ -60,27 +86,30 @@ impl<'de> Visitor<'de> for FileVisitor {
 
 /// Reads the value of a field that may occur once. The error comes before the value is read, so that its place in the
 /// file is that of the name.
-fn once<'de, T, A>(slot: &mut Option<T>, name: &str, map: &mut A) -> Result<(), A::Error>
+fn once<'de, S, A>(slot: &mut Option<S::Value>, name: &str, map: &mut A, seed: S) -> Result<(), A::Error>
 where
-    T: Deserialize<'de>,
+    S: DeserializeSeed<'de>,
     A: MapAccess<'de>,
 {
     if slot.is_some() {
         return Err(A::Error::custom(format!("the field \"{name}\" occurs twice")));
     }
-    *slot = Some(map.next_value()?);
+    *slot = Some(map.next_value_seed(seed)?);
     Ok(())
 }
 
-impl<'de: 'a, 'a> Deserialize<'de> for FileTree<'a> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_struct("", &[], FileVisitor)
+impl<'de> DeserializeSeed<'de> for FileSeed<'_> {
+    type Value = FileTree<'de>;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<FileTree<'de>, D::Error> {
+        deserializer.deserialize_struct("", &[], self)
     }
 }
 
-struct NodeVisitor;
+#[derive(Clone, Copy)]
+struct NodeSeed<'m>(&'m Meter);
 
-impl<'de> Visitor<'de> for NodeVisitor {
+impl<'de> Visitor<'de> for NodeSeed<'_> {
     type Value = NodeTree<'de>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -89,45 +118,56 @@ impl<'de> Visitor<'de> for NodeVisitor {
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<NodeTree<'de>, A::Error> {
         let mut tree = NodeTree::default();
+        if !self.0.take(NODE) {
+            return Err(A::Error::custom("too much"));
+        }
         while let Some(name) = map.next_key::<String>()? {
             match name.as_str() {
-                "kind" => once(&mut tree.kind, &name, &mut map)?,
-                "note" => once(&mut tree.note, &name, &mut map)?,
-                "inputs" => once(&mut tree.inputs, &name, &mut map)?,
-                _ => tree.unknown.push((name, map.next_value()?)),
+                "kind" => once(&mut tree.kind, &name, &mut map, Piece(self.0))?,
+                "note" => once(&mut tree.note, &name, &mut map, Piece(self.0))?,
+                "inputs" => {
+                    self.0.take(FIRST_INPUT);
+                    once(&mut tree.inputs, &name, &mut map, EntriesSeed(self.0, Piece(self.0)))?;
+                }
+                _ => tree.unknown.push((name, map.next_value_seed(Piece(self.0))?)),
             }
         }
         Ok(tree)
     }
 }
 
-impl<'de: 'a, 'a> Deserialize<'de> for NodeTree<'a> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_struct("", &[], NodeVisitor)
+impl<'de> DeserializeSeed<'de> for NodeSeed<'_> {
+    type Value = NodeTree<'de>;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<NodeTree<'de>, D::Error> {
+        deserializer.deserialize_struct("", &[], self)
     }
 }
 
-struct EntriesVisitor<V>(PhantomData<V>);
+/// Entries whose values are read by another seed.
+struct EntriesSeed<'m, S>(&'m Meter, S);
 
-impl<'de, V: Deserialize<'de>> Visitor<'de> for EntriesVisitor<V> {
-    type Value = Entries<'de, V>;
+impl<'de, S: DeserializeSeed<'de> + Copy> Visitor<'de> for EntriesSeed<'_, S> {
+    type Value = Entries<'de, S::Value>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("a map: { \"name\": ..., }")
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Entries<'de, V>, A::Error> {
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
         let mut entries = Vec::new();
-        while let Some(name) = map.next_key::<&'de RawValue>()? {
-            entries.push((name, map.next_value()?));
+        while let Some(name) = map.next_key_seed(Piece(self.0))? {
+            entries.push((name, map.next_value_seed(self.1)?));
         }
         Ok(Entries(entries))
     }
 }
 
-impl<'de: 'a, 'a, V: Deserialize<'de>> Deserialize<'de> for Entries<'a, V> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_map(EntriesVisitor(PhantomData))
+impl<'de, S: DeserializeSeed<'de> + Copy> DeserializeSeed<'de> for EntriesSeed<'_, S> {
+    type Value = Entries<'de, S::Value>;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
+        deserializer.deserialize_map(self)
     }
 }
 

@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use crate::file::FORMAT_VERSION;
-use crate::file::tree::FileTree;
+use crate::file::limit::Meter;
+use crate::file::tree::take_apart;
 use crate::graph::{Graph, Node, NodeId, Source};
 use crate::literal::{Literal, Stroke, StrokePoint};
 
@@ -175,7 +176,7 @@ fn identifier(name: &str) -> String {
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     // Which other characters may stand plainly is for RON to say.
     let reads_back =
-        || ron::from_str::<FileTree<'_>>(&format!("({name}: 0)")).is_ok_and(|t| t.unknown.iter().any(|f| f.0 == name));
+        || take_apart(&format!("({name}: 0)"), &Meter::default()).is_ok_and(|t| t.unknown.iter().any(|f| f.0 == name));
     if ascii || reads_back() { name.to_owned() } else { format!("r#{name}") }
 }
 
