@@ -10,7 +10,7 @@ pub const MOST_BYTES: usize = 16 << 20;
 
 /// What the parts of a file may ask for together, in bytes. The rest of 100 MB is for its text and for what is said about
 /// it.
-const BUDGET: usize = 60_000_000;
+const BUDGET: usize = 80_000_000;
 
 /// Most problems that are listed one by one, and the most bytes they may take together.
 pub(super) const MOST_PROBLEMS: usize = 10_000;
@@ -20,9 +20,10 @@ pub(super) const MOST_PROBLEM_BYTES: usize = 12_000_000;
 const LONGEST_QUOTE: usize = 200;
 
 /// What pieces cost at worst, in bytes: in the tree, in the graph, and in the places that are remembered.
-pub(super) const NODE: usize = 900;
-pub(super) const FIRST_INPUT: usize = 1_500;
-pub(super) const ENTRY: usize = 300;
+pub(super) const NODE: usize = 700;
+pub(super) const FIRST_INPUT: usize = 1_300;
+pub(super) const UNKNOWN_FIELD: usize = 300;
+const PIECE: usize = 90;
 /// A point of a stroke begins with a bracket; it is there as a literal and as a value, while lists grow.
 const BRACKET: usize = 112;
 /// A text is there as a literal and as a value, or as it was.
@@ -54,7 +55,7 @@ impl Meter {
     /// As [`Meter::take`] for a piece of text that may become anything.
     pub(super) fn take_text(&self, text: &str) -> bool {
         let brackets = text.bytes().filter(|byte| *byte == b'(').count();
-        self.take(ENTRY + BYTE * text.len() + BRACKET * brackets)
+        self.take(PIECE + BYTE * text.len() + BRACKET * brackets)
     }
 
     /// Whether more was asked for than there is.

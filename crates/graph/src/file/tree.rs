@@ -8,7 +8,7 @@ use ron::value::RawValue;
 use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, Visitor};
 
-use crate::file::limit::{FIRST_INPUT, Meter, NODE};
+use crate::file::limit::{FIRST_INPUT, Meter, NODE, UNKNOWN_FIELD};
 
 /// Fields with a name, in the order of the file.
 pub(super) type Fields<'a> = Vec<(String, &'a RawValue)>;
@@ -77,7 +77,10 @@ impl<'de> Visitor<'de> for FileSeed<'_> {
                 "notes" => once(&mut tree.notes, &name, &mut map, Piece(self.0))?,
                 "nodes" => once(&mut tree.nodes, &name, &mut map, EntriesSeed(self.0, NodeSeed(self.0)))?,
                 "layout" => once(&mut tree.layout, &name, &mut map, EntriesSeed(self.0, Piece(self.0)))?,
-                _ => tree.unknown.push((name, map.next_value_seed(Piece(self.0))?)),
+                _ => {
+                    self.0.take(UNKNOWN_FIELD);
+                    tree.unknown.push((name, map.next_value_seed(Piece(self.0))?));
+                }
             }
         }
         Ok(tree)
@@ -129,7 +132,10 @@ impl<'de> Visitor<'de> for NodeSeed<'_> {
                     self.0.take(FIRST_INPUT);
                     once(&mut tree.inputs, &name, &mut map, EntriesSeed(self.0, Piece(self.0)))?;
                 }
-                _ => tree.unknown.push((name, map.next_value_seed(Piece(self.0))?)),
+                _ => {
+                    self.0.take(UNKNOWN_FIELD);
+                    tree.unknown.push((name, map.next_value_seed(Piece(self.0))?));
+                }
             }
         }
         Ok(tree)
