@@ -17,7 +17,7 @@ use peak_alloc::PeakAlloc;
 const HANG: Duration = Duration::from_secs(20);
 
 /// Inputs of a plain `cargo test`.
-const INPUTS: u64 = 3_000;
+const INPUTS: u64 = 1_500;
 
 /// The allocator is one for all, so that only one test may measure at a time.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());

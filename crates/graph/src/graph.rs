@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::catalogue::{Catalogue, closest};
 use crate::literal::Literal;
 use crate::node_kind::NodeKind;
-use crate::topology::Topology;
+use crate::topology::{Closes, Topology};
 use crate::value::Value;
 
 /// Identity of a node within its graph: never reused, kept when the node is renamed, not saved.
@@ -197,7 +197,7 @@ pub enum ConnectError {
         wanted: &'static str,
     },
     /// The link would close a cycle.
-    #[error("the link would close the cycle {}: a node can't depend on its own result", .0.join(" -> "))]
+    #[error("the link would close the cycle {}: a node can't depend on its own result", around(.0))]
     Cycle(
         /// Names of the nodes around the cycle; the first is repeated at the end.
         Vec<String>,
@@ -210,6 +210,19 @@ fn did_you_mean(suggestion: Option<&str>) -> String {
 
 fn list(names: &[String]) -> String {
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+}
+
+/// Most nodes of a cycle that a message names.
+const MOST_NAMED: usize = 12;
+
+/// The nodes around a cycle; of a long one the beginning and the end.
+fn around(names: &[String]) -> String {
+    if names.len() <= MOST_NAMED {
+        return names.join(" -> ");
+    }
+    let half = MOST_NAMED / 2;
+    let (first, last) = (names[..half].join(" -> "), names[names.len() - half..].join(" -> "));
+    format!("{first} -> ({} more) -> {last}", names.len() - 2 * half)
 }
 
 static NEXT_IDENTITY: AtomicU64 = AtomicU64::new(0);
@@ -557,12 +570,40 @@ impl Graph {
 
     /// Whether a link would close a cycle.
     pub(crate) fn check_acyclic(&self, from: NodeId, to: NodeId) -> Result<(), ConnectError> {
-        match self.topology.cycle_closed_by(from, to) {
-            None => Ok(()),
-            Some(path) => {
+        match self.cycle_closed_by(from, to, &mut usize::MAX.clone()) {
+            None | Some(Ok(())) => Ok(()),
+            Some(Err(cycle)) => Err(cycle),
+        }
+    }
+
+    /// As [`Graph::check_acyclic`]; `None` where more links would have to be looked at than `patience` allows.
+    pub(crate) fn cycle_closed_by(
+        &self,
+        from: NodeId,
+        to: NodeId,
+        patience: &mut usize,
+    ) -> Option<Result<(), ConnectError>> {
+        match self.topology.closed_by(from, to, patience) {
+            Closes::Nothing => Some(Ok(())),
+            Closes::Unknown => None,
+            Closes::Cycle(path) => {
                 let names = path.iter().chain(path.first()).filter_map(|id| self.nodes.get(id));
-                Err(ConnectError::Cycle(names.map(|n| n.name.clone()).collect()))
+                Some(Err(ConnectError::Cycle(names.map(|n| n.name.clone()).collect())))
             }
+        }
+    }
+
+    /// Puts links that were checked to fit and to close no cycle all together: to the node, its input, from where.
+    pub(crate) fn put_links(&mut self, links: Vec<(NodeId, String, Link)>) {
+        for (to, input, _) in &links {
+            self.topology.unlink(*to, input);
+        }
+        self.topology.link_all(links.iter().map(|(to, input, link)| (link.node, *to, input.as_str())));
+        for (to, input, link) in links {
+            if let Some(node) = self.nodes.get_mut(&to) {
+                node.inputs.insert(input, Source::Link(link));
+            }
+            self.touch(to);
         }
     }
 

@@ -61,12 +61,15 @@ fn a_killed_save_leaves_a_whole_file() {
     saver.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     let (mut seen, mut caught_at_work) = ([0, 0], 0);
     for kill in 0..KILLS {
-        // So that the first save of this process is seen to be one.
-        let before = std::fs::metadata(&target).unwrap().modified().unwrap();
         let mut process = saver.spawn().unwrap();
-        while std::fs::metadata(&target).unwrap().modified().unwrap() == before {
-            assert!(process.try_wait().unwrap().is_none(), "it ended by itself");
-            std::thread::sleep(Duration::from_micros(200));
+        // In turn after a save of the first graph and of the second, however slow the machine is.
+        let wanted = texts[kill as usize % 2].len() as u64;
+        let other = texts[(kill as usize + 1) % 2].len() as u64;
+        for length in [other, wanted] {
+            while std::fs::metadata(&target).unwrap().len() != length {
+                assert!(process.try_wait().unwrap().is_none(), "it ended by itself");
+                std::thread::sleep(Duration::from_micros(100));
+            }
         }
         // Any moment of a save, which takes some milliseconds: steps by a golden ratio fall everywhere.
         std::thread::sleep(Duration::from_micros(kill * 6_180 % 10_000));

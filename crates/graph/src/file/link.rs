@@ -43,19 +43,27 @@ impl Suggestions {
     }
 }
 
+/// How many links are looked at to find the cycles of a file. Sound files need none of it.
+const PATIENCE: usize = 5_000_000;
+
 impl<'a> Reader<'a> {
     pub(super) fn connect_all(&mut self, links: &[PendingLink<'a>]) {
         let sound: Vec<_> = links.iter().filter_map(|link| Some((link, self.resolve(link)?))).collect();
         let harmless = self.graph.harmless(sound.iter().map(|(link, from)| (from.node, link.to)));
         // What can't close a cycle goes first, so that the others are asked in the order of the file.
         let (others, free): (Vec<_>, Vec<_>) = sound.into_iter().zip(harmless).partition(|(_, harmless)| !harmless);
-        for ((link, from), _) in free {
-            self.graph.put(link.to, &link.input, Some(Source::Link(from)));
-        }
+        let free = free.into_iter().map(|((link, from), _)| (link.to, link.input.clone(), from)).collect();
+        self.graph.put_links(free);
+        let mut patience = PATIENCE;
         for ((link, from), _) in others {
-            match self.graph.check_acyclic(from.node, link.to) {
-                Ok(()) => drop(self.graph.put(link.to, &link.input, Some(Source::Link(from)))),
-                Err(error) => self.refuse(link, error.to_string(), "remove one of its links"),
+            match self.graph.cycle_closed_by(from.node, link.to, &mut patience) {
+                Some(Ok(())) => drop(self.graph.put(link.to, &link.input, Some(Source::Link(from)))),
+                Some(Err(error)) => self.refuse(link, error.to_string(), "remove one of its links"),
+                None => {
+                    patience = 0;
+                    let message = "the link may close a cycle; so many links lie on cycles that not all were followed";
+                    self.refuse(link, message.to_owned(), "mend the cycles before it, and load the graph again");
+                }
             }
         }
     }
