@@ -58,6 +58,7 @@ fn check_one(catalogue: &Catalogue, path: &Path, arguments: &Arguments) -> bool 
         match problem.severity {
             Severity::Error => errors += 1,
             Severity::Warning => warnings += 1,
+            Severity::Note => {}
         }
     }
     let all: Vec<_> = graph.nodes().map(|(id, _)| id).collect();

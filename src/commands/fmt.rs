@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use maquette_graph::Catalogue;
-use maquette_graph::file::{self, Problem};
+use maquette_graph::file::{self, Problem, Severity};
 
 use super::comments::comments;
 use super::graph_file::GraphFile;
@@ -120,5 +120,6 @@ fn lost<'a>(catalogue: &Catalogue, file: &'a GraphFile, stable: &str) -> Vec<&'a
         }
         None => true,
     };
-    file.loaded.problems.iter().filter(gone).collect()
+    // What is said of an old file is over when it is one of today.
+    file.loaded.problems.iter().filter(|p| p.severity != Severity::Note).filter(gone).collect()
 }

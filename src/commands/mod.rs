@@ -11,6 +11,7 @@ mod fail_if;
 pub mod fmt;
 mod graph_file;
 mod hashes;
+pub mod migrate;
 pub mod nodes;
 mod overrides;
 mod progress_bar;

@@ -16,14 +16,15 @@ pub(super) fn apply(graph: &mut Graph, assignment: &str) -> Result<Literal, Stri
         fail(format!("no node is named \"{name}\"{hint}"))
     })?;
     let kind = graph.node(node).and_then(|n| n.kind().cloned());
-    let spec = kind.as_ref().and_then(|k| k.find_input(port)).ok_or_else(|| {
+    // A script may be as old as a file.
+    let spec = kind.as_ref().and_then(|k| k.current_input(port)).ok_or_else(|| {
         let known = kind.iter().flat_map(|k| k.inputs()).map(|i| i.name.as_str()).collect::<Vec<_>>().join(", ");
         fail(format!("node \"{name}\" has no input \"{port}\"; it has {known}"))
     })?;
     let wanted = LiteralKind::of_wire(spec.wire)
         .ok_or_else(|| fail(format!("the input takes {} from a link; a value can't be given", spec.wire)))?;
     let literal = literal(wanted, value).map_err(fail)?;
-    graph.set(node, port, literal.clone()).map_err(|error| fail(error.to_string()))?;
+    graph.set(node, &spec.name, literal.clone()).map_err(|error| fail(error.to_string()))?;
     Ok(literal)
 }
 

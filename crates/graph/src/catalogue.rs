@@ -30,6 +30,8 @@ struct Conversion {
 #[derive(Clone)]
 pub struct Catalogue {
     kinds: BTreeMap<String, Arc<NodeKind>>,
+    /// The names of kinds by those that they had before.
+    former_names: BTreeMap<String, String>,
     wires: BTreeMap<&'static str, WireType>,
     conversions: Vec<Conversion>,
 }
@@ -63,6 +65,16 @@ pub enum CatalogueError {
         /// Why.
         reason: String,
     },
+    /// What is stated about former times can't be.
+    #[error("node kind \"{kind}\" states something of \"{name}\" in former times: {reason}")]
+    BadFormerName {
+        /// The kind.
+        kind: String,
+        /// The name in question.
+        name: String,
+        /// Why.
+        reason: String,
+    },
     /// Two conversions for one pair.
     #[error("a conversion from {0} to {1} is declared twice")]
     DuplicateConversion(&'static str, &'static str),
@@ -77,7 +89,7 @@ impl Default for Catalogue {
 impl Catalogue {
     /// A catalogue with the built-in wire types and conversions and no kinds.
     pub fn new() -> Self {
-        let mut catalogue = Self { kinds: BTreeMap::new(), wires: BTreeMap::new(), conversions: Vec::new() };
+        let mut catalogue = Self { kinds: BTreeMap::new(), former_names: BTreeMap::new(), wires: BTreeMap::new(), conversions: Vec::new() };
         let built_in = [
             WireType::of::<f64>(),
             WireType::of::<i64>(),
@@ -100,8 +112,15 @@ impl Catalogue {
     /// A name that is taken, a default that does not fit.
     pub fn register(&mut self, kind: NodeKind) -> Result<(), CatalogueError> {
         let name = kind.name().to_owned();
-        if self.kinds.contains_key(&name) {
+        if self.kinds.contains_key(&name) || self.former_names.contains_key(&name) {
             return Err(CatalogueError::DuplicateKind(name));
+        }
+        let taken = |name: &&String| self.kinds.contains_key(*name) || self.former_names.contains_key(*name);
+        if let Some(former) = kind.former_kind_names().iter().find(|former| taken(former) || **former == name) {
+            return Err(CatalogueError::DuplicateKind(former.clone()));
+        }
+        if let Some((former, reason)) = kind.bad_former_name() {
+            return Err(CatalogueError::BadFormerName { kind: name, name: former, reason });
         }
         let inputs: Vec<_> = kind.inputs().iter().map(|i| &i.name).collect();
         let outputs: Vec<_> = kind.outputs().iter().map(|o| &o.name).collect();
@@ -121,6 +140,7 @@ impl Catalogue {
                 return Err(CatalogueError::DuplicateWire(wire.name().to_owned()));
             }
         }
+        self.former_names.extend(kind.former_kind_names().iter().map(|former| (former.clone(), name.clone())));
         self.kinds.insert(name, Arc::new(kind));
         Ok(())
     }
@@ -170,6 +190,11 @@ impl Catalogue {
     /// The kind of that name.
     pub fn kind(&self, name: &str) -> Option<&Arc<NodeKind>> {
         self.kinds.get(name)
+    }
+
+    /// The name that a kind has now which had this one before.
+    pub fn kind_now(&self, former: &str) -> Option<&str> {
+        self.former_names.get(former).map(String::as_str)
     }
 
     /// All kinds by name.

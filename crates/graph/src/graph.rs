@@ -242,6 +242,8 @@ pub struct Graph {
     pub(crate) unknown_fields: Vec<(String, String)>,
     /// Layout entries of the file that belong to no node.
     pub(crate) unknown_layout: Vec<(String, String)>,
+    /// With which versions of kinds that the catalogue does not know the file was written.
+    pub(crate) unknown_kinds: BTreeMap<String, u32>,
 }
 
 impl Default for Graph {
@@ -263,6 +265,7 @@ impl Clone for Graph {
             notes: self.notes.clone(),
             unknown_fields: self.unknown_fields.clone(),
             unknown_layout: self.unknown_layout.clone(),
+            unknown_kinds: self.unknown_kinds.clone(),
         }
     }
 }
@@ -280,6 +283,7 @@ impl Graph {
             notes: String::new(),
             unknown_fields: Vec::new(),
             unknown_layout: Vec::new(),
+            unknown_kinds: BTreeMap::new(),
         }
     }
 
@@ -306,6 +310,15 @@ impl Graph {
     /// The nodes that are results of the graph: what is evaluated when nothing else is asked for.
     pub fn results(&self) -> Vec<NodeId> {
         self.nodes().filter(|(_, n)| n.kind.as_ref().is_some_and(|k| k.gives_result())).map(|(id, _)| id).collect()
+    }
+
+    /// The versions of the kinds of its nodes, of those whose defaults were other ones before, and of those that are
+    /// unknown.
+    pub(crate) fn kind_versions(&self) -> BTreeMap<String, u32> {
+        let kinds = self.nodes.values().filter_map(|node| node.kind.as_ref());
+        let changed = kinds.filter(|kind| !kind.former_defaults().is_empty());
+        let known = changed.map(|kind| (kind.name().to_owned(), kind.version()));
+        self.unknown_kinds.clone().into_iter().chain(known).collect()
     }
 
     /// The inputs that a node feeds: node and name of the input, ordered.

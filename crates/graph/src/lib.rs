@@ -43,6 +43,7 @@ mod catalogue;
 pub mod edit;
 mod evaluate;
 pub mod file;
+mod former_names;
 mod graph;
 mod literal;
 mod node_kind;
@@ -60,6 +61,7 @@ pub use evaluate::{
     CancelToken, Evaluation, Evaluator, EvaluatorOptions, Event, EventKind, EventLog, Events, Failure, Outcome,
     OutcomeState, Request,
 };
+pub use former_names::InputHandle;
 pub use graph::{ConnectError, Graph, GraphError, Link, Node, NodeId, Source};
 pub use literal::{Choice, Colour, FilePath, Literal, LiteralKind, Stroke, StrokePoint, Strokes, Vector};
 pub use node_kind::{ChoiceInput, Choices, Input, NodeKind, OptionalInput, Output};

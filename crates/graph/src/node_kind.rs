@@ -5,6 +5,7 @@ use std::marker::PhantomData;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
+use crate::former_names::FormerNames;
 use crate::literal::{Choice, Colour, FilePath, Literal, Strokes, Vector};
 use crate::port::{InputSpec, OptionSpec, OutputSpec, Range, Unit};
 use crate::ports::{NodeError, Ports};
@@ -68,6 +69,7 @@ pub struct NodeKind {
     evaluate: Option<Arc<EvaluateFn>>,
     /// Indices of the inputs whose files it reads.
     file_inputs: Vec<usize>,
+    pub(crate) former: FormerNames,
 }
 
 impl fmt::Debug for NodeKind {
@@ -98,6 +100,7 @@ impl NodeKind {
             is_result: false,
             evaluate: None,
             file_inputs: Vec::new(),
+            former: FormerNames::default(),
         }
     }
 

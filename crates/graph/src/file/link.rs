@@ -92,6 +92,8 @@ impl<'a> Reader<'a> {
             }
             return None;
         };
+        let output = self.output_now(link, node, name, output);
+        let output = output.as_str();
         match self.graph.check_ports(self.catalogue, node, output, link.to, &link.input) {
             Ok(()) => return Some(Link { node, output: output.to_owned() }),
             // Said already, at the input.

@@ -22,6 +22,7 @@
 //! not written. Numbers, integers and booleans are bare, everything else names its type: `Link("node.output")`,
 //! `Text("..")`, `Choice("..")`, `Vector(x, y, z)`, `Colour(r, g, b, a)`, `File("..")`, `Strokes([..])`. What this
 //! version does not know (kinds, inputs, fields) or can't read is reported with its place and written back as it was.
+//! Older versions are read, and what kinds, ports and options were called before ([`migrate`]): with a note.
 //! Not kept are comments (use `notes` for the graph and `note` for a node), attributes, and all but the last of several
 //! values at one input or of several places of one node.
 
@@ -29,10 +30,12 @@ mod disk;
 mod limit;
 mod link;
 mod literal_text;
+mod migrate;
 mod place;
 mod problem;
 mod project;
 mod read;
+mod renamed;
 mod syntax;
 mod tree;
 mod write;
@@ -41,6 +44,7 @@ pub use disk::{OpenError, SaveError, open, save, write_whole};
 pub use limit::MOST_BYTES;
 pub use literal_text::{LiteralError, parse_literal};
 pub(crate) use literal_text::{Spelled, parse};
+pub use migrate::{Migrated, migrate};
 pub use problem::{FileError, Problem, Severity};
 pub use project::{Outside, Project};
 pub use read::{Loaded, from_bytes, from_text};

@@ -11,6 +11,8 @@ pub enum Severity {
     Error,
     /// It can, but something deserves a look.
     Warning,
+    /// It can; the file is an old one, and was read as what it means today. `maquette migrate` rewrites it.
+    Note,
 }
 
 impl fmt::Display for Severity {
@@ -18,6 +20,7 @@ impl fmt::Display for Severity {
         f.write_str(match self {
             Self::Error => "error",
             Self::Warning => "warning",
+            Self::Note => "note",
         })
     }
 }

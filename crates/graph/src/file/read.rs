@@ -12,7 +12,9 @@ use crate::file::syntax::{attributes, syntax_error};
 use crate::file::limit::{MOST_BYTES, MOST_PROBLEM_BYTES, MOST_PROBLEMS, Meter, quoted_in_message};
 use crate::file::tree::{FileTree, NodeTree, take_apart, trimmed};
 use crate::file::{FORMAT_VERSION, FileError, Problem, Severity};
+use crate::file::migrate::{Rewrite, STEPS, to_present};
 use crate::graph::{Graph, GraphError, NodeId, Source};
+use crate::literal::Literal;
 use crate::value::KeyHasherBuilder;
 
 /// A graph as it was read.
@@ -23,6 +25,8 @@ pub struct Loaded {
     /// Everything that is wrong, in the order of the file.
     pub problems: Vec<Problem>,
     places: HashMap<NodeId, Place, KeyHasherBuilder>,
+    /// What would make the file one of today.
+    pub(super) rewrites: Vec<Rewrite>,
 }
 
 #[derive(Debug, Default)]
@@ -72,7 +76,7 @@ fn too_long(bytes: usize) -> FileError {
     FileError::TooLarge { line: 1, column: 1, what }
 }
 
-const BYTE_ORDER_MARK: char = '\u{feff}';
+pub(super) const BYTE_ORDER_MARK: char = '\u{feff}';
 
 /// Reads a graph from text.
 ///
@@ -83,6 +87,11 @@ pub fn from_text(catalogue: &Catalogue, text: &str) -> Result<Loaded, FileError>
     if text.len() > MOST_BYTES {
         return Err(too_long(text.len()));
     }
+    read_version(catalogue, text, None)
+}
+
+/// Reads a text, first brought to the present where it is not; then `was` is the version that it had.
+fn read_version(catalogue: &Catalogue, text: &str, was: Option<u32>) -> Result<Loaded, FileError> {
     let lines = LineIndex::new(text);
     let meter = Meter::default();
     let tree = take_apart(text, &meter).map_err(|error| {
@@ -93,6 +102,11 @@ pub fn from_text(catalogue: &Catalogue, text: &str) -> Result<Loaded, FileError>
         }
         syntax_error(text, &lines, &error)
     })?;
+    if was.is_none()
+        && let Some((present, was)) = to_present(text, tree.version.map(trimmed), &STEPS)
+    {
+        return read_version(catalogue, &present, Some(was));
+    }
     let mut reader = Reader {
         catalogue,
         text,
@@ -107,16 +121,24 @@ pub fn from_text(catalogue: &Catalogue, text: &str) -> Result<Loaded, FileError>
         inputs: BTreeMap::new(),
         kept_as: HashMap::new(),
         next_number: HashMap::new(),
+        kind_versions: BTreeMap::new(),
+        rewrites: Vec::new(),
     };
-    reader.read(&tree);
+    reader.read_kind_versions(&tree);
+    reader.read(&tree, was);
     reader.problems.sort_by_key(|p| (p.line, p.column));
     reader.say_what_was_left_out();
-    Ok(Loaded { graph: reader.graph, problems: reader.problems, places: reader.places })
+    Ok(Loaded {
+        graph: reader.graph,
+        problems: reader.problems,
+        places: reader.places,
+        rewrites: reader.rewrites,
+    })
 }
 
 pub(super) struct Reader<'a> {
     pub(super) catalogue: &'a Catalogue,
-    text: &'a str,
+    pub(super) text: &'a str,
     lines: LineIndex<'a>,
     pub(super) graph: Graph,
     pub(super) suggestions: Suggestions,
@@ -128,11 +150,14 @@ pub(super) struct Reader<'a> {
     /// In the order of the file; `None` where another value at the same input took its place.
     links: Vec<Option<PendingLink<'a>>>,
     /// The inputs of the node that is read: where each has its link, if it is one.
-    inputs: BTreeMap<String, Option<usize>>,
+    pub(super) inputs: BTreeMap<String, Option<usize>>,
     /// Nodes whose names can't be names, by what the file calls them.
     kept_as: HashMap<String, NodeId>,
     /// The number to try next for nodes that are kept under another name.
     next_number: HashMap<String, usize>,
+    /// Which version of a kind the file was written with, where it says so.
+    pub(super) kind_versions: BTreeMap<String, u32>,
+    pub(super) rewrites: Vec<Rewrite>,
 }
 
 impl<'a> Reader<'a> {
@@ -146,7 +171,7 @@ impl<'a> Reader<'a> {
         self.graph.find(name).or_else(|| self.kept_as.get(name).copied())
     }
 
-    fn report(&mut self, severity: Severity, at: usize, node: Option<&str>, port: Option<&str>, what: [String; 2]) {
+    pub(super) fn report(&mut self, severity: Severity, at: usize, node: Option<&str>, port: Option<&str>, what: [String; 2]) {
         let [message, remedy] = what;
         let (node, port) = (node.map(quoted_in_message), port.map(quoted_in_message));
         let names = [&node, &port].map(|name| name.as_ref().map_or(0, String::len));
@@ -175,7 +200,7 @@ impl<'a> Reader<'a> {
         self.report(Severity::Error, at, node, port, [message, remedy.to_owned()]);
     }
 
-    fn warning(&mut self, at: usize, node: Option<&str>, message: String, remedy: &str) {
+    pub(super) fn warning(&mut self, at: usize, node: Option<&str>, message: String, remedy: &str) {
         self.report(Severity::Warning, at, node, None, [message, remedy.to_owned()]);
     }
 
@@ -207,12 +232,12 @@ impl<'a> Reader<'a> {
         text
     }
 
-    fn read(&mut self, tree: &FileTree<'a>) {
+    fn read(&mut self, tree: &FileTree<'a>, was: Option<u32>) {
         if let Some(at) = attributes(self.text) {
             let message = "the attribute #![...] has no meaning in a graph".to_owned();
             self.warning(at, None, message, "remove it; it is not kept");
         }
-        self.version(tree);
+        self.version(tree, was);
         let mut kept = Vec::new();
         if let Some(notes) = self.field(tree.notes, None, "notes", &mut kept) {
             self.graph.notes = notes;
@@ -228,6 +253,7 @@ impl<'a> Reader<'a> {
         }
         let links: Vec<_> = std::mem::take(&mut self.links).into_iter().flatten().collect();
         self.connect_all(&links);
+        self.kind_versions_now(tree);
         self.layout(tree);
         for (name, raw) in &tree.unknown {
             let piece = trimmed(raw);
@@ -246,7 +272,7 @@ impl<'a> Reader<'a> {
         self.warning(at, node, message, "it is kept; check its spelling, or update Maquette");
     }
 
-    fn version(&mut self, tree: &FileTree<'a>) {
+    fn version(&mut self, tree: &FileTree<'a>, was: Option<u32>) {
         let Some(raw) = tree.version else {
             self.error(0, None, None, "the field \"version\" is missing".to_owned(), "add version: 1");
             return;
@@ -261,7 +287,13 @@ impl<'a> Reader<'a> {
                 let known = FORMAT_VERSION;
                 (format!("the file has format version {version}, and this Maquette reads {known}"), "update Maquette")
             }
-            Ok(_) => return,
+            Ok(_) => {
+                if let Some(was) = was {
+                    let message = format!("the file has format version {was}, and was read as {FORMAT_VERSION}");
+                    self.note(at, None, None, message);
+                }
+                return;
+            }
         };
         self.error(at, None, None, message, remedy);
         self.graph.unknown_fields.push(("version".to_owned(), piece.to_owned()));
@@ -276,6 +308,7 @@ impl<'a> Reader<'a> {
             self.error(name_at, Some(&wanted), None, message, "add kind: \"...\"; `maquette nodes` lists them");
         }
         let spelled = self.field(tree.kind, Some(&wanted), "kind", &mut kept);
+        let spelled = spelled.map(|kind| self.kind_now(kind, tree.kind, &wanted));
         let kind = spelled.clone().unwrap_or_default();
         let Some(id) = self.insert(&kind, &wanted, name_at) else { return };
         self.places.insert(id, Place { at: self.lines.place(name_at), inputs: Vec::new() });
@@ -293,6 +326,7 @@ impl<'a> Reader<'a> {
         for (input, raw) in tree.inputs.iter().flat_map(|inputs| &inputs.0) {
             self.input(id, &wanted, input, raw);
         }
+        self.former_defaults(id, &wanted, tree, name_at);
         for (field, raw) in &tree.unknown {
             let piece = trimmed(raw);
             kept.push((field.clone(), piece.to_owned()));
@@ -346,6 +380,7 @@ impl<'a> Reader<'a> {
     fn input(&mut self, id: NodeId, node: &str, name: &'a RawValue, raw: &'a RawValue) {
         let name_at = self.offset(trimmed(name));
         let input = self.name(name, Some(node), "an input's name");
+        let input = self.input_now(id, node, input, name);
         let piece = trimmed(raw);
         let at = self.offset(piece);
         let place = self.lines.place(at);
@@ -372,7 +407,14 @@ impl<'a> Reader<'a> {
             self.error(name_at, Some(node), Some(&input), format!("{} has no such input", kind.name()), &remedy);
         }
         let mut unread = None;
-        match (parse(piece), spec) {
+        let value = parse(piece);
+        let value = match (&kind, value) {
+            (Some(kind), Ok(Spelled::Literal(Literal::Choice(option)))) => {
+                Ok(Spelled::Literal(Literal::Choice(self.option_now(kind, node, &input, option, piece))))
+            }
+            (_, value) => value,
+        };
+        match (value, spec) {
             (Ok(Spelled::Link(address)), _) => {
                 self.inputs.insert(input.clone(), Some(self.links.len()));
                 self.links.push(Some(PendingLink { to: id, input, address, raw }));

@@ -18,6 +18,8 @@ pub(super) type Fields<'a> = Vec<(String, &'a RawValue)>;
 pub(super) struct FileTree<'a> {
     pub(super) version: Option<&'a RawValue>,
     pub(super) notes: Option<&'a RawValue>,
+    /// Versions of kinds, where their defaults were other ones before.
+    pub(super) kinds: Option<Entries<'a, &'a RawValue>>,
     pub(super) nodes: Option<Entries<'a, NodeTree<'a>>>,
     pub(super) layout: Option<Entries<'a, &'a RawValue>>,
     pub(super) unknown: Fields<'a>,
@@ -75,6 +77,7 @@ impl<'de> Visitor<'de> for FileSeed<'_> {
             match name.as_str() {
                 "version" => once(&mut tree.version, &name, &mut map, Piece(self.0))?,
                 "notes" => once(&mut tree.notes, &name, &mut map, Piece(self.0))?,
+                "kinds" => once(&mut tree.kinds, &name, &mut map, EntriesSeed(self.0, Piece(self.0)))?,
                 "nodes" => once(&mut tree.nodes, &name, &mut map, EntriesSeed(self.0, NodeSeed(self.0)))?,
                 "layout" => once(&mut tree.layout, &name, &mut map, EntriesSeed(self.0, Piece(self.0)))?,
                 _ => {

@@ -19,6 +19,7 @@ pub fn to_text(graph: &Graph) -> String {
     if !graph.notes.is_empty() {
         line(&mut out, 1, &format!("notes: {},", quoted(&graph.notes)));
     }
+    write_kind_versions(&mut out, graph);
     line(&mut out, 1, "nodes: {");
     for (_, node) in graph.nodes() {
         write_node(&mut out, graph, node);
@@ -46,11 +47,25 @@ pub fn to_text(graph: &Graph) -> String {
     out
 }
 
+/// The versions of kinds whose defaults were other ones before: without them, the file would mean something else when
+/// defaults change again.
+fn write_kind_versions(out: &mut String, graph: &Graph) {
+    let versions = graph.kind_versions();
+    if !versions.is_empty() {
+        line(out, 1, "kinds: {");
+        for (kind, version) in versions {
+            line(out, 2, &format!("{}: {version},", quoted(&kind)));
+        }
+        line(out, 1, "},");
+    }
+}
+
 /// Some nodes as the text of a graph. Links from nodes that are not among them stay in the text, by name.
 pub(crate) fn selection_to_text(graph: &Graph, nodes: &BTreeSet<NodeId>) -> String {
     let nodes: Vec<_> = nodes.iter().filter_map(|id| graph.node(*id)).collect();
     let mut out = String::from("(\n");
     line(&mut out, 1, &format!("version: {FORMAT_VERSION},"));
+    write_kind_versions(&mut out, graph);
     line(&mut out, 1, "nodes: {");
     for node in &nodes {
         write_node(&mut out, graph, node);
@@ -98,13 +113,20 @@ fn write_node(out: &mut String, graph: &Graph, node: &Node) {
 }
 
 fn write_input(out: &mut String, graph: &Graph, name: &str, source: &Source) {
-    let value = match source {
+    if let Source::Literal { literal: Literal::Strokes(strokes), .. } = source {
+        return write_strokes(out, name, strokes);
+    }
+    line(out, 4, &format!("{}: {},", quoted(name), input_value(graph, source)));
+}
+
+/// What stands at an input, in one piece; strokes on one line.
+pub(super) fn input_value(graph: &Graph, source: &Source) -> String {
+    match source {
         Source::Unread(raw) => raw.clone(),
         Source::Link(link) => {
             let from = graph.node(link.node).map_or("", Node::name);
             format!("Link({})", quoted(&format!("{from}.{}", link.output)))
         }
-        Source::Literal { literal: Literal::Strokes(strokes), .. } => return write_strokes(out, name, strokes),
         Source::Literal { literal, .. } => match literal {
             Literal::Number(value) => number(*value),
             Literal::Integer(value) => value.to_string(),
@@ -114,10 +136,14 @@ fn write_input(out: &mut String, graph: &Graph, name: &str, source: &Source) {
             Literal::File(path) => format!("File({})", quoted(path)),
             Literal::Vector(vector) => format!("Vector({})", numbers(vector)),
             Literal::Colour(colour) => format!("Colour({})", numbers(colour)),
-            Literal::Strokes(_) => return,
+            Literal::Strokes(strokes) => {
+                let mut out = String::new();
+                write_strokes(&mut out, "", strokes);
+                let lines: Vec<_> = out.lines().map(str::trim).collect();
+                lines.concat().trim_start_matches("\"\": ").trim_end_matches(',').to_owned()
+            }
         },
-    };
-    line(out, 4, &format!("{}: {value},", quoted(name)));
+    }
 }
 
 fn write_strokes(out: &mut String, name: &str, strokes: &[Stroke]) {
@@ -148,7 +174,7 @@ fn line(out: &mut String, depth: usize, text: &str) {
     out.push('\n');
 }
 
-fn quoted(text: &str) -> String {
+pub(super) fn quoted(text: &str) -> String {
     let mut out = String::with_capacity(text.len() + 2);
     out.push('"');
     for c in text.chars() {
