@@ -102,7 +102,9 @@ impl Subject<'_> {
 
     /// Reads every file of a folder.
     pub fn hold_cases(&self, folder: &Path) {
-        let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+        // Nothing was found as long as there is no folder.
+        let Ok(entries) = std::fs::read_dir(folder) else { return };
+        let mut paths: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
         paths.sort();
         for path in paths.iter().filter(|path| path.extension().is_none_or(|e| e != "md")) {
             self.hold(&path.display().to_string(), &std::fs::read(path).unwrap());
