@@ -2,7 +2,7 @@
 
 use crate::literal::Literal;
 use crate::node_kind::{ChoiceInput, Choices, Input, NodeKind, OptionalInput, Output};
-use crate::port::InputSpec;
+use crate::port::{InputSpec, OutputSpec};
 
 /// Everything that was different once.
 #[derive(Clone, Debug, Default)]
@@ -87,10 +87,10 @@ impl NodeKind {
         self.find_input(name).or_else(|| self.inputs().get(former()?.1))
     }
 
-    /// The name of the output that had that name before.
-    pub(crate) fn output_now(&self, former: &str) -> Option<&str> {
-        let (_, index) = self.former.outputs.iter().find(|(name, _)| name == former)?;
-        self.outputs().get(*index).map(|output| output.name.as_str())
+    /// The output of that name, or the one that had that name before.
+    pub fn current_output(&self, name: &str) -> Option<&OutputSpec> {
+        let former = || self.former.outputs.iter().find(|(former, _)| former == name);
+        self.find_output(name).map(|(_, output)| output).or_else(|| self.outputs().get(former()?.1))
     }
 
     /// The option of an input that had that name before.

@@ -66,13 +66,14 @@ impl<'a> Reader<'a> {
     pub(super) fn output_now(&mut self, link: &PendingLink<'a>, from: NodeId, name: &str, output: &str) -> String {
         let kind = self.graph.node(from).and_then(|n| n.kind().cloned());
         let kind = kind.filter(|kind| kind.find_output(output).is_none());
-        let Some(now) = kind.as_ref().and_then(|kind| kind.output_now(output)) else { return output.to_owned() };
+        let now = kind.as_ref().and_then(|kind| kind.current_output(output));
+        let Some(now) = now.map(|spec| spec.name.clone()) else { return output.to_owned() };
         let node = self.graph.node(link.to).map(|n| n.name().to_owned());
         let piece = trimmed(link.raw);
         let message = format!("the output \"{output}\" of \"{name}\" is called \"{now}\" today");
         self.note(self.offset(piece), node.as_deref(), Some(&link.input), message);
         self.rewrite(piece, format!("Link({})", quoted(&format!("{name}.{now}"))));
-        now.to_owned()
+        now
     }
 
     /// Which versions of kinds the file was written with.
