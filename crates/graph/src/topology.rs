@@ -5,7 +5,7 @@
 //! directed acyclic graphs*, ACM JEA 11, 2007): most links agree with it, and then nothing is searched; one that does not
 //! only touches the nodes that lie between its ends.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 use petgraph::Direction;
 use petgraph::stable_graph::{NodeIndex, StableDiGraph};
@@ -41,8 +41,22 @@ impl Topology {
         if self.ranks.len() <= place.index() {
             self.ranks.resize(place.index() + 1, 0);
         }
+        // Nodes that went leave gaps, which searches must step over.
+        if self.next_rank > 4 * self.links.node_count() + 1_000 {
+            self.close_gaps();
+        }
         self.ranks[place.index()] = self.next_rank;
         self.next_rank += 1;
+    }
+
+    /// Numbers the ranks anew, in the same order.
+    fn close_gaps(&mut self) {
+        let mut places: Vec<NodeIndex> = self.links.node_indices().collect();
+        places.sort_unstable_by_key(|place| self.rank(*place));
+        for (rank, place) in places.iter().enumerate() {
+            self.ranks[place.index()] = rank;
+        }
+        self.next_rank = places.len();
     }
 
     pub(crate) fn remove(&mut self, node: NodeId) {
@@ -86,20 +100,30 @@ impl Topology {
         direction: Direction,
         patience: &mut usize,
     ) -> Option<Vec<NodeIndex>> {
-        let last = self.rank(limit);
-        let within = |place| match direction {
-            Direction::Outgoing => self.rank(place) <= last,
-            Direction::Incoming => self.rank(place) >= last,
+        let [first, last] = [self.rank(start), self.rank(limit)];
+        // Ranks are all different, so that a bit for each tells whether its node was reached.
+        let mut seen = vec![0_u64; first.abs_diff(last) / 64 + 1];
+        let mut is_new = |place| {
+            let rank: usize = self.rank(place);
+            let within = match direction {
+                Direction::Outgoing => rank <= last,
+                Direction::Incoming => rank >= last,
+            };
+            let bit = rank.abs_diff(first);
+            // What lies beyond the limit is not asked for.
+            within && seen.get_mut(bit / 64).is_some_and(|bits| {
+                let before = *bits;
+                *bits |= 1 << (bit % 64);
+                *bits != before
+            })
         };
-        let mut seen: HashSet<NodeIndex, KeyHasherBuilder> = HashSet::default();
-        seen.insert(start);
         let mut reached = vec![start];
         let mut next = 0;
         while let Some(place) = reached.get(next).copied() {
             next += 1;
             for neighbour in self.links.neighbors_directed(place, direction) {
                 *patience = patience.checked_sub(1)?;
-                if within(neighbour) && seen.insert(neighbour) {
+                if is_new(neighbour) {
                     reached.push(neighbour);
                 }
             }
@@ -194,6 +218,8 @@ impl Topology {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashSet;
+
     use petgraph::visit::IntoEdgeReferences as _;
 
     use super::*;
@@ -250,6 +276,20 @@ mod tests {
             }
             assert!(refused > 10);
         }
+    }
+
+    #[test]
+    fn ranks_stay_few_while_nodes_come_and_go() {
+        let mut topology = Topology::default();
+        for round in 0..10_000 {
+            topology.add(NodeId(round));
+            if round >= 10 {
+                topology.link(NodeId(round), NodeId(round - 5), "a");
+                topology.remove(NodeId(round - 10));
+            }
+            assert!(topology.next_rank <= 2_000);
+        }
+        assert_ordered(&topology);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use ron::value::RawValue;
 
 use crate::catalogue::{Catalogue, closest};
 use crate::file::link::{PendingLink, Suggestions};
-use crate::file::literal_text::{Spelled, parse};
+use crate::file::literal_text::{Spelled, parse, plain_text};
 use crate::file::place::LineIndex;
 use crate::file::syntax::{attributes, syntax_error};
 use crate::file::limit::{MOST_BYTES, MOST_PROBLEM_BYTES, MOST_PROBLEMS, Meter, quoted_in_message};
@@ -207,6 +207,9 @@ impl<'a> Reader<'a> {
     /// A name, before a colon. One that is not in quotes is taken as it is.
     fn name(&mut self, raw: &'a RawValue, node: Option<&str>, what: &str) -> String {
         let piece = trimmed(raw);
+        if let Some(name) = plain_text(piece) {
+            return name.to_owned();
+        }
         ron::from_str(piece).unwrap_or_else(|_| {
             let at = self.offset(piece);
             self.error(at, node, None, format!("{what} is not a text"), "write it in double quotes");
@@ -223,7 +226,7 @@ impl<'a> Reader<'a> {
         kept: &mut Vec<(String, String)>,
     ) -> Option<String> {
         let piece = trimmed(raw?);
-        let text = ron::from_str(piece).ok();
+        let text = plain_text(piece).map(str::to_owned).or_else(|| ron::from_str(piece).ok());
         if text.is_none() {
             let at = self.offset(piece);
             self.error(at, node, None, format!("the field \"{field}\" is not a text"), "write it in double quotes");
