@@ -1,5 +1,7 @@
 //! SVG drawings into flat curves.
 
+use std::panic::AssertUnwindSafe;
+
 use glam::DVec2;
 use usvg::roxmltree;
 use usvg::tiny_skia_path::PathSegment;
@@ -117,8 +119,11 @@ fn parse(bytes: &[u8]) -> Result<usvg::Tree, ReadError> {
         },
         ..usvg::Options::default()
     };
-    usvg::Tree::from_xmltree(&document, &options)
-        .map_err(|error| malformed("the drawing".to_owned(), error.to_string()))
+    let refused = |problem: String| malformed("the drawing".to_owned(), problem);
+    // tiny-skia-path 0.12 breaks down over the bounds of curves whose numbers are extreme; nothing of it is kept.
+    std::panic::catch_unwind(AssertUnwindSafe(|| usvg::Tree::from_xmltree(&document, &options)))
+        .map_err(|_| refused("the numbers of a path are too large or too small to be measured".to_owned()))?
+        .map_err(|error| refused(error.to_string()))
 }
 
 /// The subpaths of a path, without names; `None` where no points are left.
