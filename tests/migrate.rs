@@ -34,6 +34,9 @@ fn what_is_no_graph_is_said_and_the_others_are_looked_at() {
     let (code, said, complained) = maquette(&["migrate", str(&text), "none.ron", str(&graph)]);
     assert_eq!(code, 2);
     assert!(said.contains("a.ron: of the present version"), "{said}");
-    assert!(complained.contains("letter.ron:1:1: error: ") && complained.contains("none.ron: error: there is no such file"), "{complained}");
+    assert!(
+        complained.contains("letter.ron:1:1: error: ") && complained.contains("none.ron: error: there is no such file"),
+        "{complained}"
+    );
     assert_eq!(std::fs::read_to_string(&text).unwrap(), "Dear all,");
 }

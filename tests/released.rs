@@ -94,7 +94,8 @@ fn unchanged(graph: &Graph, now: &BTreeMap<String, Json>, then: &BTreeMap<String
         let name = graph.node(*id).unwrap().name();
         then.get(name).is_some_and(|then| then["version"] == now[name]["version"])
     };
-    let nodes = graph.nodes().filter(|(id, node)| now.contains_key(node.name()) && graph.upstream(&[*id]).iter().all(same));
+    let nodes =
+        graph.nodes().filter(|(id, node)| now.contains_key(node.name()) && graph.upstream(&[*id]).iter().all(same));
     nodes.map(|(_, node)| node.name().to_owned()).collect()
 }
 
@@ -103,7 +104,8 @@ fn difference(now: &Json, then: &Json) -> Option<String> {
     if now["hash"] == then["hash"] {
         return None;
     }
-    let numbers = |of: &Json| of["measures"].as_array().map(|all| all.iter().filter_map(Json::as_f64).collect::<Vec<_>>());
+    let numbers =
+        |of: &Json| of["measures"].as_array().map(|all| all.iter().filter_map(Json::as_f64).collect::<Vec<_>>());
     let (Some(now), Some(then)) = (numbers(now), numbers(then)) else {
         // Nothing is measured of what only passes a mesh or curves on.
         return None;

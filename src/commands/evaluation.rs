@@ -21,8 +21,9 @@ pub struct EvaluationArguments {
     /// Evaluate only this result (the name of a mesh-out or curves-out node); may be given several times.
     #[arg(long = "output", value_name = "NAME")]
     pub(super) outputs: Vec<String>,
-    /// Put a value at an input for this evaluation, such as --set legs.count=32; may be given several times.
-    #[arg(long = "set", value_name = "NODE.PORT=VALUE")]
+    /// Put a value at an input, such as --set legs.count=32, or at a parameter of the graph, such as --set
+    /// stiffness=0.8, for this evaluation; may be given several times. maquette check --parameters lists parameters.
+    #[arg(long = "set", value_name = "ADDRESS=VALUE")]
     pub(super) set: Vec<String>,
     #[command(flatten)]
     pub(super) project: ProjectArguments,
@@ -46,6 +47,8 @@ pub(super) struct Evaluated {
     pub(super) failures: Vec<String>,
     /// What deserves a look, in the file or in a node's result.
     pub(super) warnings: Vec<String>,
+    /// Those of them that are about the file.
+    pub(super) file_warnings: Vec<String>,
 }
 
 /// A graph that is ready to be evaluated.
@@ -54,7 +57,9 @@ pub(super) struct Opened {
     /// Its results that were asked for.
     pub(super) targets: Vec<NodeId>,
     /// What deserves a look in the file.
-    warnings: Vec<String>,
+    pub(super) warnings: Vec<String>,
+    /// Whether to measure as well what is measured on request only.
+    pub(super) examine: bool,
 }
 
 /// Of which nodes the values are kept for a closer look.
@@ -77,20 +82,8 @@ pub(super) fn open(
     arguments: &EvaluationArguments,
     suits: impl Fn(&[WireType]) -> Result<(), Vec<String>>,
 ) -> Result<Opened, Vec<String>> {
-    let (mut file, warnings) = GraphFile::open_sound(catalogue, &arguments.graph)?;
-    file.project = arguments.project.of(file.base());
-    let mut wrong = Vec::new();
-    for set in &arguments.set {
-        match overrides::apply(&mut file.loaded.graph, set) {
-            // What the user named the user wants to be read.
-            Ok(Literal::File(path)) => {
-                let path = file.base().join(path);
-                file.project.allow(path);
-            }
-            Ok(_) => {}
-            Err(message) => wrong.push(message),
-        }
-    }
+    let (mut file, warnings) = GraphFile::open_sound(catalogue, &arguments.graph, &arguments.project)?;
+    let wrong: Vec<String> = arguments.set.iter().filter_map(|set| file.apply(set).err()).collect();
     if !wrong.is_empty() {
         let path = file.path.display();
         return Err(wrong.into_iter().map(|message| format!("{path}: error: {message}")).collect());
@@ -107,7 +100,7 @@ pub(super) fn open(
         .flat_map(|k| k.outputs().iter().map(|o| o.wire).collect::<Vec<_>>())
         .collect();
     suits(&types)?;
-    Ok(Opened { file, targets, warnings })
+    Ok(Opened { file, targets, warnings, examine: false })
 }
 
 /// Evaluates; what fails in a node is in [`Evaluated::failures`], what is wrong with graph or arguments is an error.
@@ -133,38 +126,47 @@ impl Opened {
         keep: Keep,
         cancel: &CancelToken,
     ) -> Evaluated {
-        let Self { file, targets, mut warnings } = self;
+        let Self { file, targets, mut warnings, examine } = self;
+        let file_warnings = warnings.clone();
         let graph = &file.loaded.graph;
         let progress = Progress::new(!quiet);
         let asked = if keep == Keep::Everything { graph.upstream(&targets) } else { targets.clone() };
         let request = Request::nodes(&asked).events(&progress).base(file.base()).project(&file.project).cancel(cancel);
+        let request = if examine { request.examine() } else { request };
         let evaluation = evaluator.evaluate(catalogue, graph, &request);
         progress.finish();
-        let mut failures = Vec::new();
-        for (id, outcome) in evaluation.outcomes() {
-            match &outcome.state {
-                OutcomeState::Failed(failure) => {
-                    failures.push(file.about(Severity::Error, id, failure.port.as_deref(), &failure.message));
-                }
-                OutcomeState::Waiting(on) if targets.contains(&id) => {
-                    failures.push(file.about(
-                        Severity::Error,
-                        id,
-                        None,
-                        &format!("not made, because \"{}\" failed", on.join("\", \"")),
-                    ));
-                }
-                OutcomeState::Done { report, .. } => {
-                    warnings.extend(report.warnings.iter().map(|w| file.about(Severity::Warning, id, None, w)));
-                }
-                _ => {}
-            }
-        }
+        let (failures, of_nodes) = messages(&file, &targets, &evaluation);
+        warnings.extend(of_nodes);
         if !quiet {
             warnings.iter().for_each(console::remark);
         }
-        Evaluated { file, targets, evaluation, failures, warnings }
+        Evaluated { file, targets, evaluation, failures, warnings, file_warnings }
     }
+}
+
+/// What an evaluation failed at, and what deserves a look in its results: one message each.
+pub(super) fn messages(file: &GraphFile, targets: &[NodeId], evaluation: &Evaluation) -> (Vec<String>, Vec<String>) {
+    let (mut failures, mut warnings) = (Vec::new(), Vec::new());
+    for (id, outcome) in evaluation.outcomes() {
+        match &outcome.state {
+            OutcomeState::Failed(failure) => {
+                failures.push(file.about(Severity::Error, id, failure.port.as_deref(), &failure.message));
+            }
+            OutcomeState::Waiting(on) if targets.contains(&id) => {
+                failures.push(file.about(
+                    Severity::Error,
+                    id,
+                    None,
+                    &format!("not made, because \"{}\" failed", on.join("\", \"")),
+                ));
+            }
+            OutcomeState::Done { report, .. } => {
+                warnings.extend(report.warnings.iter().map(|w| file.about(Severity::Warning, id, None, w)));
+            }
+            _ => {}
+        }
+    }
+    (failures, warnings)
 }
 
 fn targets(file: &GraphFile, wanted: &[String]) -> Result<Vec<NodeId>, Vec<String>> {

@@ -6,6 +6,7 @@ use maquette_graph::Catalogue;
 use maquette_graph::file;
 
 use super::graph_file::GraphFile;
+use super::project::ProjectArguments;
 use super::{Ended, console, write};
 
 /// Rewrite graphs of earlier versions: the format, and names and defaults of nodes that were other ones then. They are
@@ -46,7 +47,7 @@ pub fn migrate(arguments: &Arguments) -> Ended {
 
 fn one(catalogue: &Catalogue, arguments: &Arguments, path: &Path) -> Ended {
     let name = path.display();
-    let opened = GraphFile::open(catalogue, path);
+    let opened = GraphFile::open(catalogue, path, &ProjectArguments::default());
     let opened = opened.and_then(|file| match file::migrate(catalogue, &file.text) {
         Ok(migrated) => Ok((file, migrated)),
         Err(error) => Err(vec![format!("{name}:{error}")]),

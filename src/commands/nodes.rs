@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use maquette_graph::{Catalogue, InputSpec, Literal, NodeKind, Range, Unit};
+use maquette_graph::{Catalogue, InputSpec, Literal, NodeKind, Range, TableSpec, Unit};
 use serde_json::{Value as Json, json};
 
 use super::{Ended, console};
@@ -59,6 +59,10 @@ pub fn nodes(arguments: &Arguments) -> Ended {
     Ended::Done
 }
 
+/// Where the ports of a node with a body come from.
+const BODY: &str =
+    "The parameters of its body are further inputs, the outputs of its body its outputs (docs/parts.md).";
+
 /// The reference page of all node kinds.
 pub fn markdown(catalogue: &Catalogue) -> String {
     let mut page = String::from(
@@ -73,6 +77,12 @@ pub fn markdown(catalogue: &Catalogue) -> String {
     page.push_str("\nImplicit conversions, only where nothing is lost: ");
     let conversions: Vec<_> = catalogue.conversions().map(|(from, to)| format!("`{from}` to `{to}`")).collect();
     let _ = writeln!(page, "{}.\n", conversions.join(", "));
+    page.push_str("What `repeat` collects: ");
+    let collected = catalogue.collections().map(|(item, collected, splits)| {
+        let split = if splits { " (and takes apart again with `each`)" } else { "" };
+        format!("`{item}` to `{collected}`{split}")
+    });
+    let _ = writeln!(page, "{}.\n", collected.collect::<Vec<_>>().join(", "));
     let mut categories: Vec<&str> = catalogue.kinds().map(|kind| kind.category()).collect();
     categories.sort_unstable();
     categories.dedup();
@@ -89,6 +99,10 @@ pub fn markdown(catalogue: &Catalogue) -> String {
 
 fn kind_markdown(kind: &NodeKind) -> String {
     let mut text = format!("### {}\n\n{}\n\n", kind.name(), kind.description());
+    if kind.has_body() {
+        text.push_str(BODY);
+        text.push_str("\n\n");
+    }
     if !kind.reference_text().is_empty() {
         let _ = writeln!(text, "Reference: {}.\n", kind.reference_text());
     }
@@ -109,17 +123,44 @@ fn kind_markdown(kind: &NodeKind) -> String {
         }
         text.push('\n');
     }
+    if kind.has_body() && kind.outputs().is_empty() {
+        return text;
+    }
     text.push_str("| output | type | what it is |\n|---|---|---|\n");
     for output in kind.outputs() {
         let _ = writeln!(text, "| `{}` | {} | {} |", output.name, output.wire, output.description);
     }
     text.push('\n');
+    let measured = measured(kind);
+    if !measured.is_empty() {
+        text.push_str("| measured | unit | what it says |\n|---|---|---|\n");
+        for (name, unit, description) in measured {
+            let _ = writeln!(text, "| `{name}` | {unit} | {description} |");
+        }
+        text.push('\n');
+    }
     text
+}
+
+/// Figures, and tables with their columns: name, unit, description.
+fn measured(kind: &NodeKind) -> Vec<(String, String, String)> {
+    let figures = kind.figures().iter().map(|f| (f.name.clone(), f.unit.to_string(), f.description.clone()));
+    let mut measured: Vec<_> = figures.collect();
+    for table in kind.tables() {
+        for (index, column) in table.columns.iter().enumerate() {
+            let description = if index == 0 { table.description.clone() } else { String::new() };
+            measured.push((format!("{}.{}", table.name, column.name), column.unit.to_string(), description));
+        }
+    }
+    measured
 }
 
 fn kind_text(kind: &NodeKind) -> String {
     let mut text =
         format!("{} (version {}, {})\n  {}\n", kind.name(), kind.version(), kind.category(), kind.description());
+    if kind.has_body() {
+        let _ = writeln!(text, "  {BODY}");
+    }
     if !kind.reference_text().is_empty() {
         let _ = writeln!(text, "  reference: {}", kind.reference_text());
     }
@@ -135,6 +176,15 @@ fn kind_text(kind: &NodeKind) -> String {
     text.push_str("outputs\n");
     for output in kind.outputs() {
         let _ = writeln!(text, "  {} ({})\n      {}", output.name, output.wire, output.description);
+    }
+    let measured = measured(kind);
+    if !measured.is_empty() {
+        text.push_str("measured\n");
+    }
+    for (name, unit, description) in measured {
+        let unit = if unit.is_empty() { unit } else { format!(" ({unit})") };
+        let description = if description.is_empty() { description } else { format!("\n      {description}") };
+        let _ = writeln!(text, "  {name}{unit}{description}");
     }
     text
 }
@@ -202,6 +252,19 @@ fn kind_json(kind: &NodeKind) -> Json {
         .iter()
         .map(|output| json!({ "name": output.name, "type": output.wire.name(), "description": output.description }))
         .collect();
+    let figures: Vec<Json> = kind
+        .figures()
+        .iter()
+        .map(|f| json!({ "name": f.name, "unit": f.unit.to_string(), "description": f.description }))
+        .collect();
+    let columns = |table: &TableSpec| -> Vec<Json> {
+        table.columns.iter().map(|c| json!({ "name": c.name, "unit": c.unit.to_string() })).collect()
+    };
+    let tables: Vec<Json> = kind
+        .tables()
+        .iter()
+        .map(|t| json!({ "name": t.name, "columns": columns(t), "description": t.description }))
+        .collect();
     json!({
         "name": kind.name(),
         "version": kind.version(),
@@ -209,8 +272,11 @@ fn kind_json(kind: &NodeKind) -> Json {
         "description": kind.description(),
         "reference": kind.reference_text(),
         "result": kind.gives_result(),
+        "has_body": kind.has_body(),
         "inputs": inputs,
         "outputs": outputs,
+        "figures": figures,
+        "tables": tables,
     })
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use maquette_graph::file::Project;
 
 /// What the commands that read a graph's files have in common.
-#[derive(clap::Args)]
+#[derive(Clone, Debug, Default, clap::Args)]
 pub struct ProjectArguments {
     /// The project's folder: the graph may read files that lie below it. By default it is the graph's own folder; files
     /// named with --set are always allowed.

@@ -173,8 +173,9 @@ impl Subject<'_> {
                     input.splice(range, piece);
                 }
                 7 => {
-                    let (open, close) = [("(", ")"), ("[", "]"), ("{", "}"), ("/*", "*/"), ("Some(", ")"), ("<g>", "</g>")]
-                        [dice.below(6)];
+                    let (open, close) =
+                        [("(", ")"), ("[", "]"), ("{", "}"), ("/*", "*/"), ("Some(", ")"), ("<g>", "</g>")]
+                            [dice.below(6)];
                     let (range, times) = (dice.range(length, 60), 1 << dice.below(14));
                     let inner = input[range.clone()].to_vec();
                     let wrapped = [open.repeat(times).as_bytes(), &inner, close.repeat(times).as_bytes()].concat();
@@ -196,8 +197,26 @@ impl Subject<'_> {
         let Some(start) = input[from..].iter().position(u8::is_ascii_digit).map(|at| from + at) else { return };
         let length = input[start..].iter().take_while(|b| b.is_ascii_digit() || **b == b'.').count();
         let number = [
-            "0", "-1", "1", "2", "255", "65536", "4294967295", "4294967296", "1000000000000", "18446744073709551616",
-            "9223372036854775807", "-9223372036854775808", "1e308", "1e-308", "1e999", "-0.0", "NaN", "inf", "0.1.2", "",
+            "0",
+            "-1",
+            "1",
+            "2",
+            "255",
+            "65536",
+            "4294967295",
+            "4294967296",
+            "1000000000000",
+            "18446744073709551616",
+            "9223372036854775807",
+            "-9223372036854775808",
+            "1e308",
+            "1e-308",
+            "1e999",
+            "-0.0",
+            "NaN",
+            "inf",
+            "0.1.2",
+            "",
         ][dice.below(20)];
         input.splice(start..start + length, number.bytes());
     }

@@ -3,6 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use crate::body::built_in;
+use crate::freeze::{Freeze, Freezer};
+use crate::list::{Collection, ListType};
 use crate::literal::{Choice, Colour, FilePath, Strokes, Vector};
 use crate::node_kind::NodeKind;
 use crate::port::exact_number;
@@ -34,6 +37,9 @@ pub struct Catalogue {
     former_names: BTreeMap<String, String>,
     wires: BTreeMap<&'static str, WireType>,
     conversions: Vec<Conversion>,
+    pub(crate) lists: Vec<ListType>,
+    pub(crate) collections: Vec<Collection>,
+    freezers: BTreeMap<&'static str, (WireType, Freezer)>,
 }
 
 /// Why a declaration was refused.
@@ -47,7 +53,7 @@ pub enum CatalogueError {
     DuplicatePort {
         /// The kind.
         kind: String,
-        /// Inputs or outputs.
+        /// Inputs, outputs, or figures and tables.
         what: &'static str,
         /// The name.
         port: String,
@@ -78,6 +84,9 @@ pub enum CatalogueError {
     /// Two conversions for one pair.
     #[error("a conversion from {0} to {1} is declared twice")]
     DuplicateConversion(&'static str, &'static str),
+    /// Two lists of, or ways to collect, one type.
+    #[error("how values of type {0} are listed or collected is declared twice")]
+    DuplicateList(&'static str),
 }
 
 impl Default for Catalogue {
@@ -87,9 +96,19 @@ impl Default for Catalogue {
 }
 
 impl Catalogue {
-    /// A catalogue with the built-in wire types and conversions and no kinds.
+    /// A catalogue with the built-in wire types and conversions, and no kinds but those that have a body, `graph` and
+    /// `repeat`.
     pub fn new() -> Self {
-        let mut catalogue = Self { kinds: BTreeMap::new(), former_names: BTreeMap::new(), wires: BTreeMap::new(), conversions: Vec::new() };
+        let kinds = built_in().into_iter().map(|kind| (kind.name().to_owned(), Arc::new(kind))).collect();
+        let mut catalogue = Self {
+            kinds,
+            former_names: BTreeMap::new(),
+            wires: BTreeMap::new(),
+            conversions: Vec::new(),
+            lists: Vec::new(),
+            collections: Vec::new(),
+            freezers: BTreeMap::new(),
+        };
         let built_in = [
             WireType::of::<f64>(),
             WireType::of::<i64>(),
@@ -103,7 +122,30 @@ impl Catalogue {
         ];
         catalogue.wires.extend(built_in.map(|wire| (wire.name(), wire)));
         catalogue.add_conversion::<i64, f64>(|integer| exact_number(*integer));
+        catalogue.freezable::<f64>();
+        catalogue.freezable::<i64>();
+        catalogue.freezable::<bool>();
+        catalogue.freezable::<String>();
+        catalogue.freezable::<Choice>();
+        catalogue.freezable::<Vector>();
+        catalogue.freezable::<Colour>();
+        catalogue.freezable::<FilePath>();
+        catalogue.freezable::<Strokes>();
         catalogue
+    }
+
+    /// Lets golden files hold values of this type ([`crate::freeze`]).
+    pub fn freezable<T: Freeze>(&mut self) {
+        self.freezers.insert(T::NAME, (WireType::of::<T>(), Freezer::of::<T>()));
+    }
+
+    pub(crate) fn freezer(&self, wire: WireType) -> Option<Freezer> {
+        self.freezers.get(wire.name()).filter(|(known, _)| *known == wire).map(|(_, freezer)| *freezer)
+    }
+
+    /// Whether golden files can hold values of this type.
+    pub fn is_freezable(&self, wire: WireType) -> bool {
+        self.freezer(wire).is_some()
     }
 
     /// Adds a node kind, and the wire types of its ports.
@@ -124,7 +166,8 @@ impl Catalogue {
         }
         let inputs: Vec<_> = kind.inputs().iter().map(|i| &i.name).collect();
         let outputs: Vec<_> = kind.outputs().iter().map(|o| &o.name).collect();
-        for (what, ports) in [("inputs", inputs), ("outputs", outputs)] {
+        let measured = kind.figures().iter().map(|f| &f.name).chain(kind.tables().iter().map(|t| &t.name)).collect();
+        for (what, ports) in [("inputs", inputs), ("outputs", outputs), ("figures or tables", measured)] {
             if let Some(port) = ports.iter().enumerate().find_map(|(i, p)| ports[..i].contains(p).then_some(*p)) {
                 return Err(CatalogueError::DuplicatePort { kind: name, what, port: port.clone() });
             }
@@ -136,13 +179,24 @@ impl Catalogue {
         }
         let wires = kind.inputs().iter().map(|i| i.wire).chain(kind.outputs().iter().map(|o| o.wire));
         for wire in wires {
-            if *self.wires.entry(wire.name()).or_insert(wire) != wire {
-                return Err(CatalogueError::DuplicateWire(wire.name().to_owned()));
-            }
+            self.add_wire(wire)?;
         }
         self.former_names.extend(kind.former_kind_names().iter().map(|former| (former.clone(), name.clone())));
         self.kinds.insert(name, Arc::new(kind));
         Ok(())
+    }
+
+    pub(crate) fn add_wire(&mut self, wire: WireType) -> Result<(), CatalogueError> {
+        if *self.wires.entry(wire.name()).or_insert(wire) == wire {
+            Ok(())
+        } else {
+            Err(CatalogueError::DuplicateWire(wire.name().to_owned()))
+        }
+    }
+
+    /// The wire type of that name.
+    pub fn wire(&self, name: &str) -> Option<WireType> {
+        self.wires.get(name).copied()
     }
 
     fn add_conversion<A: Wire, B: Wire>(
@@ -217,7 +271,7 @@ impl Catalogue {
 const LONGEST_COMPARED: usize = 80;
 
 /// The candidate most like a misspelt name, where one is alike enough to be meant.
-pub(crate) fn closest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+pub fn closest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     // Names are short; to compare two long texts takes the product of their lengths.
     let comparable = |text: &str| text.len() <= LONGEST_COMPARED;
     candidates

@@ -1,5 +1,9 @@
 //! What a kind, its ports and its options were called before, and what their defaults were: with it, old files load.
 
+use std::collections::BTreeMap;
+
+use crate::body::BodySource;
+use crate::graph::Graph;
 use crate::literal::Literal;
 use crate::node_kind::{ChoiceInput, Choices, Input, NodeKind, OptionalInput, Output};
 use crate::port::{InputSpec, OutputSpec};
@@ -136,9 +140,30 @@ impl NodeKind {
             }
             if *until >= self.version() {
                 let version = self.version();
-                return Some((spec.name.clone(), format!("a former default ends before version {version} of the kind")));
+                return Some((
+                    spec.name.clone(),
+                    format!("a former default ends before version {version} of the kind"),
+                ));
             }
         }
         None
+    }
+}
+
+impl Graph {
+    /// The versions of the kinds of its nodes, of those whose defaults were other ones before, and of those that are
+    /// unknown.
+    pub(crate) fn kind_versions(&self) -> BTreeMap<String, u32> {
+        let kinds = self.nodes.values().filter_map(|node| node.kind.as_ref());
+        let changed = kinds.filter(|kind| !kind.former_defaults().is_empty());
+        let known = changed.map(|kind| (kind.name().to_owned(), kind.version()));
+        let mut versions: BTreeMap<String, u32> = self.unknown_kinds.clone().into_iter().chain(known).collect();
+        // What is embedded is written into the same file.
+        for body in self.nodes.values().filter_map(|node| node.body()) {
+            if let (BodySource::Embedded, Some(graph)) = (body.source(), body.graph()) {
+                versions.extend(graph.kind_versions());
+            }
+        }
+        versions
     }
 }

@@ -11,7 +11,7 @@ use petgraph::Direction;
 use petgraph::stable_graph::{NodeIndex, StableDiGraph};
 use petgraph::visit::EdgeRef;
 
-use crate::graph::NodeId;
+use crate::graph::{ConnectError, Graph, Link, NodeId, Source};
 use crate::value::KeyHasherBuilder;
 
 /// Links between nodes, one edge per link, labelled with the input it enters. Always acyclic.
@@ -111,11 +111,12 @@ impl Topology {
             };
             let bit = rank.abs_diff(first);
             // What lies beyond the limit is not asked for.
-            within && seen.get_mut(bit / 64).is_some_and(|bits| {
-                let before = *bits;
-                *bits |= 1 << (bit % 64);
-                *bits != before
-            })
+            within
+                && seen.get_mut(bit / 64).is_some_and(|bits| {
+                    let before = *bits;
+                    *bits |= 1 << (bit % 64);
+                    *bits != before
+                })
         };
         let mut reached = vec![start];
         let mut next = 0;
@@ -213,6 +214,52 @@ impl Topology {
     pub(crate) fn dependents(&self, node: NodeId) -> impl Iterator<Item = NodeId> + '_ {
         let place = self.places.get(&node).copied();
         place.into_iter().flat_map(|p| self.links.neighbors_directed(p, Direction::Outgoing)).map(|n| self.links[n])
+    }
+}
+
+impl Graph {
+    /// Whether a link would close a cycle.
+    pub(crate) fn check_acyclic(&self, from: NodeId, to: NodeId) -> Result<(), ConnectError> {
+        match self.cycle_closed_by(from, to, &mut usize::MAX.clone()) {
+            None | Some(Ok(())) => Ok(()),
+            Some(Err(cycle)) => Err(cycle),
+        }
+    }
+
+    /// As [`Graph::check_acyclic`]; `None` where more links would have to be looked at than `patience` allows.
+    pub(crate) fn cycle_closed_by(
+        &self,
+        from: NodeId,
+        to: NodeId,
+        patience: &mut usize,
+    ) -> Option<Result<(), ConnectError>> {
+        match self.topology.closed_by(from, to, patience) {
+            Closes::Nothing => Some(Ok(())),
+            Closes::Unknown => None,
+            Closes::Cycle(path) => {
+                let names = path.iter().chain(path.first()).filter_map(|id| self.nodes.get(id));
+                Some(Err(ConnectError::Cycle(names.map(|n| n.name.clone()).collect())))
+            }
+        }
+    }
+
+    /// Puts links that were checked to fit and to close no cycle all together: to the node, its input, from where.
+    pub(crate) fn put_links(&mut self, links: Vec<(NodeId, String, Link)>) {
+        for (to, input, _) in &links {
+            self.topology.unlink(*to, input);
+        }
+        self.topology.link_all(links.iter().map(|(to, input, link)| (link.node, *to, input.as_str())));
+        for (to, input, link) in links {
+            if let Some(node) = self.nodes.get_mut(&to) {
+                node.inputs.insert(input, Source::Link(link));
+            }
+            self.touch(to);
+        }
+    }
+
+    /// For each of these links, whether it can't be part of a cycle if all of them are added.
+    pub(crate) fn harmless(&self, links: impl Iterator<Item = (NodeId, NodeId)> + Clone) -> Vec<bool> {
+        self.topology.harmless(links)
     }
 }
 

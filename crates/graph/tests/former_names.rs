@@ -107,7 +107,10 @@ fn old_names_and_defaults_are_read_with_notes() {
     let again = file::from_text(&catalogue, &saved).unwrap();
     assert_eq!(again.problems, []);
     assert_eq!(file::to_text(&again.graph), saved);
-    assert!(saved.starts_with("(\n    version: 1,\n    kinds: {\n        \"plus\": 2,\n    },\n    nodes: {\n"), "{saved}");
+    assert!(
+        saved.starts_with("(\n    version: 1,\n    kinds: {\n        \"plus\": 2,\n    },\n    nodes: {\n"),
+        "{saved}"
+    );
     assert_eq!(totals(&catalogue, &saved), totals(&catalogue, OLD));
 }
 
@@ -193,7 +196,9 @@ fn names_that_are_in_use_are_no_former_ones() {
     for name in ["plus", "sum", "new"] {
         assert_eq!(refused(&|node| node.formerly(name)), format!("node kind \"{name}\" is registered twice"));
     }
-    let former = |name: &str, reason: &str| format!("node kind \"new\" states something of \"{name}\" in former times: {reason}");
+    let former = |name: &str, reason: &str| {
+        format!("node kind \"new\" states something of \"{name}\" in former times: {reason}")
+    };
     let said = refused(&|node| {
         let a = node.boolean("a", false, "A.");
         node.boolean("b", false, "B.");

@@ -223,18 +223,20 @@ pub(super) fn real(path: &Path) -> io::Result<PathBuf> {
     loop {
         match fs::canonicalize(&there) {
             Ok(real) => return Ok(rest.iter().rev().fold(real, |path, name| path.join(name))),
-            Err(error) if error.kind() == io::ErrorKind::NotFound && links < MOST_LINKS => match fs::read_link(&there) {
-                // A link to nowhere leads where it points to, and not where it stands.
-                Ok(link) => {
-                    there = there.parent().unwrap_or(Path::new("")).join(link);
-                    links += 1;
+            Err(error) if error.kind() == io::ErrorKind::NotFound && links < MOST_LINKS => {
+                match fs::read_link(&there) {
+                    // A link to nowhere leads where it points to, and not where it stands.
+                    Ok(link) => {
+                        there = there.parent().unwrap_or(Path::new("")).join(link);
+                        links += 1;
+                    }
+                    Err(_) => {
+                        let Some(name) = there.file_name().map(ToOwned::to_owned) else { return Err(error) };
+                        rest.push(name);
+                        there.pop();
+                    }
                 }
-                Err(_) => {
-                    let Some(name) = there.file_name().map(ToOwned::to_owned) else { return Err(error) };
-                    rest.push(name);
-                    there.pop();
-                }
-            },
+            }
             Err(error) => return Err(error),
         }
     }

@@ -19,13 +19,24 @@ pub(super) const MOST_PROBLEM_BYTES: usize = 12_000_000;
 /// Longest piece of a file that a message repeats, in characters.
 const LONGEST_QUOTE: usize = 200;
 
+/// What is said of a graph that asks for more.
+pub(super) const TOO_LARGE: &str = "its nodes, values and points take more than 100 MB to read";
+
 /// What pieces cost at worst, in bytes: in the tree, in the graph, and in the places that are remembered.
 pub(super) const NODE: usize = 700;
 pub(super) const FIRST_INPUT: usize = 1_300;
 pub(super) const UNKNOWN_FIELD: usize = 300;
+/// A body has a graph and a kind of its own.
+pub(super) const BODY: usize = 3_000;
+/// A parameter or output; all of them are asked for each one's name.
+pub(super) const INTERFACE: usize = 10_000;
+/// Each port of a kind that follows from a body.
+pub(super) const BODY_PORT: usize = 1_000;
 const PIECE: usize = 90;
 /// A point of a stroke begins with a bracket; it is there as a literal and as a value, while lists grow.
 const BRACKET: usize = 112;
+/// A text in quotes may be one of a list.
+const QUOTE: usize = 40;
 /// A text is there as a literal and as a value, or as it was.
 const BYTE: usize = 3;
 
@@ -54,8 +65,8 @@ impl Meter {
 
     /// As [`Meter::take`] for a piece of text that may become anything.
     pub(super) fn take_text(&self, text: &str) -> bool {
-        let brackets = text.bytes().filter(|byte| *byte == b'(').count();
-        self.take(PIECE + BYTE * text.len() + BRACKET * brackets)
+        let count = |mark: u8| text.bytes().filter(|byte| *byte == mark).count();
+        self.take(PIECE + BYTE * text.len() + BRACKET * count(b'(') + QUOTE * count(b'"'))
     }
 
     /// Whether more was asked for than there is.

@@ -111,7 +111,8 @@ mod tests {
         let first: Step = |text| text.replace("one", "two");
         let second: Step = |text| text.replace("two", "three");
         let steps = [first, second];
-        let at = |version: &str, word: &str| format!("( // {word}\n version: {version} /* here */, nodes: {{}}, x: {word})");
+        let at =
+            |version: &str, word: &str| format!("( // {word}\n version: {version} /* here */, nodes: {{}}, x: {word})");
         let led = |version: &str, word: &str| to_present(&at(version, word), Some(version), &steps);
         assert_eq!(led("1", "one"), Some((at("3", "three"), 1)));
         assert_eq!(led("2", "two"), Some((at("3", "three"), 2)));

@@ -26,7 +26,10 @@
 //! Not kept are comments (use `notes` for the graph and `note` for a node), attributes, and all but the last of several
 //! values at one input or of several places of one node.
 
+mod body;
 mod disk;
+mod include;
+mod interface;
 mod limit;
 mod link;
 mod literal_text;
@@ -41,15 +44,16 @@ mod tree;
 mod write;
 
 pub use disk::{OpenError, SaveError, open, save, write_whole};
+pub use include::Includes;
 pub use limit::MOST_BYTES;
 pub use literal_text::{LiteralError, parse_literal};
 pub(crate) use literal_text::{Spelled, parse};
 pub use migrate::{Migrated, migrate};
 pub use problem::{FileError, Problem, Severity};
 pub use project::{Outside, Project};
-pub use read::{Loaded, from_bytes, from_text};
-pub(crate) use write::selection_to_text;
+pub use read::{Loaded, from_bytes, from_bytes_with, from_text, from_text_with};
 pub use write::to_text;
+pub(crate) use write::{number, quoted, selection_to_text};
 
 /// Version of the format that this library writes. Older versions are read.
 pub const FORMAT_VERSION: u32 = 1;

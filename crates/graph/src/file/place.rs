@@ -68,7 +68,8 @@ impl<'a> LineIndex<'a> {
         let index = self.notes.partition_point(|note| note.newlines < wanted).saturating_sub(1);
         let near = self.text.as_bytes().get(index * STEP..).unwrap_or_default();
         let mut newlines = self.notes.get(index).map_or(0, |note| note.newlines);
-        let mut start = if newlines == wanted { self.notes.get(index).map(|note| note.line_start as usize) } else { None };
+        let mut start =
+            if newlines == wanted { self.notes.get(index).map(|note| note.line_start as usize) } else { None };
         for (at, byte) in near.iter().enumerate() {
             if newlines >= wanted {
                 break;

@@ -5,14 +5,15 @@ use std::collections::{BTreeMap, HashMap};
 use ron::value::RawValue;
 
 use crate::catalogue::{Catalogue, closest};
+use crate::file::include::{Includes, Inclusion, Standing};
+use crate::file::limit::{MOST_BYTES, TOO_LARGE, quoted_in_message};
 use crate::file::link::{PendingLink, Suggestions};
 use crate::file::literal_text::{Spelled, parse, plain_text};
+use crate::file::migrate::{Rewrite, STEPS, to_present};
 use crate::file::place::LineIndex;
 use crate::file::syntax::{attributes, syntax_error};
-use crate::file::limit::{MOST_BYTES, MOST_PROBLEM_BYTES, MOST_PROBLEMS, Meter, quoted_in_message};
 use crate::file::tree::{FileTree, NodeTree, take_apart, trimmed};
 use crate::file::{FORMAT_VERSION, FileError, Problem, Severity};
-use crate::file::migrate::{Rewrite, STEPS, to_present};
 use crate::graph::{Graph, GraphError, NodeId, Source};
 use crate::literal::Literal;
 use crate::value::KeyHasherBuilder;
@@ -22,8 +23,10 @@ use crate::value::KeyHasherBuilder;
 pub struct Loaded {
     /// The graph; with placeholders for what was not understood.
     pub graph: Graph,
-    /// Everything that is wrong, in the order of the file.
+    /// Everything that is wrong, in the order of the file; what is wrong in included files comes behind.
     pub problems: Vec<Problem>,
+    /// The files that were included, or were to be, seen from the graph's folder; each once, by name.
+    pub included: Vec<String>,
     places: HashMap<NodeId, Place, KeyHasherBuilder>,
     /// What would make the file one of today.
     pub(super) rewrites: Vec<Rewrite>,
@@ -57,18 +60,28 @@ impl Loaded {
 /// Only where nothing can be read: not UTF-8, not RON, not shaped like a graph. Everything else is in
 /// [`Loaded::problems`].
 pub fn from_bytes(catalogue: &Catalogue, bytes: &[u8]) -> Result<Loaded, FileError> {
+    from_bytes_with(catalogue, bytes, &Includes::none())
+}
+
+/// As [`from_bytes`], for a graph that may include other files.
+///
+/// # Errors
+/// As [`from_bytes`].
+pub fn from_bytes_with(catalogue: &Catalogue, bytes: &[u8], includes: &Includes<'_>) -> Result<Loaded, FileError> {
+    from_text_with(catalogue, utf8(bytes)?, includes)
+}
+
+/// The bytes as text.
+pub(super) fn utf8(bytes: &[u8]) -> Result<&str, FileError> {
     if bytes.len() > MOST_BYTES {
         return Err(too_long(bytes.len()));
     }
-    match std::str::from_utf8(bytes) {
-        Ok(text) => from_text(catalogue, text),
-        Err(error) => {
-            let good = std::str::from_utf8(&bytes[..error.valid_up_to()]).unwrap_or_default();
-            let good = good.strip_prefix(BYTE_ORDER_MARK).unwrap_or(good);
-            let (line, column) = LineIndex::new(good).place(good.len());
-            Err(FileError::NotUtf8 { line, column })
-        }
-    }
+    std::str::from_utf8(bytes).map_err(|error| {
+        let good = std::str::from_utf8(&bytes[..error.valid_up_to()]).unwrap_or_default();
+        let good = good.strip_prefix(BYTE_ORDER_MARK).unwrap_or(good);
+        let (line, column) = LineIndex::new(good).place(good.len());
+        FileError::NotUtf8 { line, column }
+    })
 }
 
 fn too_long(bytes: usize) -> FileError {
@@ -83,69 +96,76 @@ pub(super) const BYTE_ORDER_MARK: char = '\u{feff}';
 /// # Errors
 /// As [`from_bytes`].
 pub fn from_text(catalogue: &Catalogue, text: &str) -> Result<Loaded, FileError> {
+    from_text_with(catalogue, text, &Includes::none())
+}
+
+/// As [`from_text`], for a graph that may include other files.
+///
+/// # Errors
+/// As [`from_bytes`].
+pub fn from_text_with(catalogue: &Catalogue, text: &str, includes: &Includes<'_>) -> Result<Loaded, FileError> {
+    let inclusion = Inclusion::new(catalogue, includes);
+    let Read { graph, mut problems, places, rewrites } = inclusion.read(text, &Standing::of_root(includes))?;
+    problems.sort_by_key(|p| (p.line, p.column));
+    let left_out = inclusion.left_out();
+    let (mut elsewhere, included) = inclusion.finish();
+    problems.append(&mut elsewhere);
+    problems.extend(left_out);
+    Ok(Loaded { graph, problems, included, places, rewrites })
+}
+
+/// What came of one graph of a file.
+pub(super) struct Read {
+    pub(super) graph: Graph,
+    pub(super) problems: Vec<Problem>,
+    places: HashMap<NodeId, Place, KeyHasherBuilder>,
+    pub(super) rewrites: Vec<Rewrite>,
+}
+
+/// Reads the text of a whole file.
+pub(super) fn read_file(inclusion: &Inclusion<'_>, text: &str, standing: &Standing) -> Result<Read, FileError> {
     let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
     if text.len() > MOST_BYTES {
         return Err(too_long(text.len()));
     }
-    read_version(catalogue, text, None)
+    read_version(inclusion, text, standing, None)
 }
 
 /// Reads a text, first brought to the present where it is not; then `was` is the version that it had.
-fn read_version(catalogue: &Catalogue, text: &str, was: Option<u32>) -> Result<Loaded, FileError> {
+fn read_version(
+    inclusion: &Inclusion<'_>,
+    text: &str,
+    standing: &Standing,
+    was: Option<u32>,
+) -> Result<Read, FileError> {
     let lines = LineIndex::new(text);
-    let meter = Meter::default();
-    let tree = take_apart(text, &meter).map_err(|error| {
-        if meter.is_exceeded() {
+    let tree = take_apart(text, &inclusion.meter).map_err(|error| {
+        if inclusion.meter.is_exceeded() {
             let (line, column) = lines.place(lines.byte(error.span.start.line, error.span.start.col));
-            let what = "its nodes, values and points take more than 100 MB to read".to_owned();
-            return FileError::TooLarge { line, column, what };
+            return FileError::TooLarge { line, column, what: TOO_LARGE.to_owned() };
         }
         syntax_error(text, &lines, &error)
     })?;
     if was.is_none()
         && let Some((present, was)) = to_present(text, tree.version.map(trimmed), &STEPS)
     {
-        return read_version(catalogue, &present, Some(was));
+        return read_version(inclusion, &present, standing, Some(was));
     }
-    let mut reader = Reader {
-        catalogue,
-        text,
-        lines,
-        graph: Graph::new(),
-        suggestions: Suggestions::default(),
-        problems: Vec::new(),
-        problem_bytes: 0,
-        left_out: [0, 0],
-        places: HashMap::default(),
-        links: Vec::new(),
-        inputs: BTreeMap::new(),
-        kept_as: HashMap::new(),
-        next_number: HashMap::new(),
-        kind_versions: BTreeMap::new(),
-        rewrites: Vec::new(),
-    };
+    let mut reader = Reader::new(inclusion, text, &lines, standing);
+    reader.was = was;
     reader.read_kind_versions(&tree);
-    reader.read(&tree, was);
-    reader.problems.sort_by_key(|p| (p.line, p.column));
-    reader.say_what_was_left_out();
-    Ok(Loaded {
-        graph: reader.graph,
-        problems: reader.problems,
-        places: reader.places,
-        rewrites: reader.rewrites,
-    })
+    Ok(reader.read(&tree))
 }
 
 pub(super) struct Reader<'a> {
     pub(super) catalogue: &'a Catalogue,
+    pub(super) inclusion: &'a Inclusion<'a>,
     pub(super) text: &'a str,
-    lines: LineIndex<'a>,
+    pub(super) lines: &'a LineIndex<'a>,
+    pub(super) standing: &'a Standing,
     pub(super) graph: Graph,
     pub(super) suggestions: Suggestions,
-    problems: Vec<Problem>,
-    problem_bytes: usize,
-    /// Errors and warnings that are not in `problems`, because there are too many.
-    left_out: [usize; 2],
+    pub(super) problems: Vec<Problem>,
     places: HashMap<NodeId, Place, KeyHasherBuilder>,
     /// In the order of the file; `None` where another value at the same input took its place.
     links: Vec<Option<PendingLink<'a>>>,
@@ -155,12 +175,40 @@ pub(super) struct Reader<'a> {
     kept_as: HashMap<String, NodeId>,
     /// The number to try next for nodes that are kept under another name.
     next_number: HashMap<String, usize>,
+    /// The format version that the file had, where it was brought to the present.
+    was: Option<u32>,
     /// Which version of a kind the file was written with, where it says so.
     pub(super) kind_versions: BTreeMap<String, u32>,
     pub(super) rewrites: Vec<Rewrite>,
 }
 
 impl<'a> Reader<'a> {
+    pub(super) fn new(
+        inclusion: &'a Inclusion<'a>,
+        text: &'a str,
+        lines: &'a LineIndex<'a>,
+        standing: &'a Standing,
+    ) -> Self {
+        Self {
+            catalogue: inclusion.catalogue,
+            inclusion,
+            text,
+            lines,
+            standing,
+            graph: Graph::new(),
+            suggestions: Suggestions::default(),
+            problems: Vec::new(),
+            places: HashMap::default(),
+            links: Vec::new(),
+            inputs: BTreeMap::new(),
+            kept_as: HashMap::new(),
+            next_number: HashMap::new(),
+            was: None,
+            kind_versions: BTreeMap::new(),
+            rewrites: Vec::new(),
+        }
+    }
+
     /// Byte of a piece of the text within the text.
     pub(super) fn offset(&self, piece: &str) -> usize {
         (piece.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize)
@@ -171,28 +219,29 @@ impl<'a> Reader<'a> {
         self.graph.find(name).or_else(|| self.kept_as.get(name).copied())
     }
 
-    pub(super) fn report(&mut self, severity: Severity, at: usize, node: Option<&str>, port: Option<&str>, what: [String; 2]) {
-        let [message, remedy] = what;
-        let (node, port) = (node.map(quoted_in_message), port.map(quoted_in_message));
-        let names = [&node, &port].map(|name| name.as_ref().map_or(0, String::len));
-        self.problem_bytes += size_of::<Problem>() + message.len() + remedy.len() + names[0] + names[1];
-        if self.problems.len() >= MOST_PROBLEMS || self.problem_bytes > MOST_PROBLEM_BYTES {
-            self.left_out[usize::from(severity == Severity::Warning)] += 1;
-            return;
-        }
+    pub(super) fn report(
+        &mut self,
+        severity: Severity,
+        at: usize,
+        node: Option<&str>,
+        port: Option<&str>,
+        what: [String; 2],
+    ) {
         let (line, column) = self.lines.place(at);
-        self.problems.push(Problem { severity, line, column, node, port, message, remedy });
-    }
-
-    /// Says how many problems are not listed.
-    fn say_what_was_left_out(&mut self) {
-        let (line, column) = self.lines.place(self.text.len());
-        for (severity, count) in [Severity::Error, Severity::Warning].into_iter().zip(self.left_out) {
-            if count > 0 {
-                let message = format!("{count} more of this kind are not listed");
-                let remedy = "mend what is listed first".to_owned();
-                self.problems.push(Problem { severity, line, column, node: None, port: None, message, remedy });
-            }
+        let [message, remedy] = what;
+        let node = node.map(quoted_in_message);
+        let problem = Problem {
+            severity,
+            file: self.standing.file.clone(),
+            line,
+            column,
+            node: self.standing.path_of(node.as_deref()),
+            port: port.map(quoted_in_message),
+            message,
+            remedy,
+        };
+        if self.inclusion.has_room_for(&problem) {
+            self.problems.push(problem);
         }
     }
 
@@ -205,7 +254,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A name, before a colon. One that is not in quotes is taken as it is.
-    fn name(&mut self, raw: &'a RawValue, node: Option<&str>, what: &str) -> String {
+    pub(super) fn name(&mut self, raw: &'a RawValue, node: Option<&str>, what: &str) -> String {
         let piece = trimmed(raw);
         if let Some(name) = plain_text(piece) {
             return name.to_owned();
@@ -218,7 +267,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The text of a known field; where it is none, the field goes to those that are kept as they are.
-    fn field(
+    pub(super) fn field(
         &mut self,
         raw: Option<&'a RawValue>,
         node: Option<&str>,
@@ -235,17 +284,22 @@ impl<'a> Reader<'a> {
         text
     }
 
-    fn read(&mut self, tree: &FileTree<'a>, was: Option<u32>) {
-        if let Some(at) = attributes(self.text) {
-            let message = "the attribute #![...] has no meaning in a graph".to_owned();
-            self.warning(at, None, message, "remove it; it is not kept");
+    pub(super) fn read(mut self, tree: &FileTree<'a>) -> Read {
+        if self.standing.is_embedded() {
+            self.no_version(tree);
+        } else {
+            if let Some(at) = attributes(self.text) {
+                let message = "the attribute #![...] has no meaning in a graph".to_owned();
+                self.warning(at, None, message, "remove it; it is not kept");
+            }
+            self.version(tree);
         }
-        self.version(tree, was);
         let mut kept = Vec::new();
         if let Some(notes) = self.field(tree.notes, None, "notes", &mut kept) {
             self.graph.notes = notes;
         }
         self.graph.unknown_fields.append(&mut kept);
+        self.parameters(tree);
         match &tree.nodes {
             None => self.error(0, None, None, "the field \"nodes\" is missing".to_owned(), "add nodes: {}"),
             Some(nodes) => {
@@ -257,15 +311,27 @@ impl<'a> Reader<'a> {
         let links: Vec<_> = std::mem::take(&mut self.links).into_iter().flatten().collect();
         self.connect_all(&links);
         self.kind_versions_now(tree);
+        self.outputs(tree);
         self.layout(tree);
         for (name, raw) in &tree.unknown {
             let piece = trimmed(raw);
             self.graph.unknown_fields.push((name.clone(), piece.to_owned()));
             self.unknown_field(None, name, piece);
         }
+        Read { graph: self.graph, problems: self.problems, places: self.places, rewrites: self.rewrites }
     }
 
-    fn unknown_field(&mut self, node: Option<&str>, field: &str, piece: &str) {
+    /// An embedded graph has the version of its file.
+    fn no_version(&mut self, tree: &FileTree<'a>) {
+        if let Some(raw) = tree.version {
+            let piece = trimmed(raw);
+            self.graph.unknown_fields.push(("version".to_owned(), piece.to_owned()));
+            let message = "an embedded graph has no version of its own".to_owned();
+            self.warning(self.offset(piece), None, message, "remove it; it is kept");
+        }
+    }
+
+    pub(super) fn unknown_field(&mut self, node: Option<&str>, field: &str, piece: &str) {
         let message = format!("the field \"{}\" is unknown to this version", quoted_in_message(field));
         let at = self.offset(piece);
         // RON gives the name without its place; it stands before the value, but for a comment between them.
@@ -275,7 +341,7 @@ impl<'a> Reader<'a> {
         self.warning(at, node, message, "it is kept; check its spelling, or update Maquette");
     }
 
-    fn version(&mut self, tree: &FileTree<'a>, was: Option<u32>) {
+    fn version(&mut self, tree: &FileTree<'a>) {
         let Some(raw) = tree.version else {
             self.error(0, None, None, "the field \"version\" is missing".to_owned(), "add version: 1");
             return;
@@ -291,7 +357,7 @@ impl<'a> Reader<'a> {
                 (format!("the file has format version {version}, and this Maquette reads {known}"), "update Maquette")
             }
             Ok(_) => {
-                if let Some(was) = was {
+                if let Some(was) = self.was {
                     let message = format!("the file has format version {was}, and was read as {FORMAT_VERSION}");
                     self.note(at, None, None, message);
                 }
@@ -326,6 +392,7 @@ impl<'a> Reader<'a> {
             self.error(at, Some(&wanted), None, format!("the node kind \"{kind}\" is unknown"), &remedy);
         }
         let note = self.field(tree.note, Some(&wanted), "note", &mut kept).unwrap_or_default();
+        self.body(id, &wanted, tree, &mut kept);
         for (input, raw) in tree.inputs.iter().flat_map(|inputs| &inputs.0) {
             self.input(id, &wanted, input, raw);
         }
@@ -335,9 +402,11 @@ impl<'a> Reader<'a> {
             kept.push((field.clone(), piece.to_owned()));
             self.unknown_field(Some(&wanted), field, piece);
         }
+        let muted = self.muted(tree, &wanted, &mut kept);
         if let Some(node) = self.graph.nodes.get_mut(&id) {
             node.note = note;
             node.unknown_fields = kept;
+            node.set_muted(muted);
         }
     }
 
@@ -422,6 +491,7 @@ impl<'a> Reader<'a> {
                 self.inputs.insert(input.clone(), Some(self.links.len()));
                 self.links.push(Some(PendingLink { to: id, input, address, raw }));
             }
+            (Ok(Spelled::Parameter(parameter)), _) => self.use_parameter(id, node, &input, &parameter, piece),
             // What an unknown input means is not known either: its text stays, digit for digit.
             (_, None) => drop(self.graph.put(id, &input, Some(Source::Unread(piece.to_owned())))),
             (Ok(Spelled::Literal(literal)), Some(spec)) => match spec.refuses(&literal) {

@@ -10,8 +10,8 @@ use crate::file::link::PendingLink;
 use crate::file::migrate::Rewrite;
 use crate::file::read::Reader;
 use crate::file::tree::{FileTree, NodeTree, trimmed};
-use crate::file::write::{input_value, quoted};
-use crate::graph::{NodeId, Source};
+use crate::file::write::{quoted, spelled_literal};
+use crate::graph::NodeId;
 use crate::node_kind::NodeKind;
 
 impl<'a> Reader<'a> {
@@ -87,8 +87,10 @@ impl<'a> Reader<'a> {
                         None => drop(self.graph.unknown_kinds.insert(kind.clone(), version)),
                         Some(known) if version > known.version() => {
                             let (here, kind) = (known.version(), quoted_in_message(&kind));
-                            let message = format!("the file was written with version {version} of {kind}, and this \
-                                                   Maquette has {here}: what is not written may mean something else");
+                            let message = format!(
+                                "the file was written with version {version} of {kind}, and this \
+                                                   Maquette has {here}: what is not written may mean something else"
+                            );
                             self.warning(self.offset(piece), None, message, "update Maquette");
                         }
                         Some(_) => {}
@@ -115,8 +117,7 @@ impl<'a> Reader<'a> {
             if written_with > former.until || self.inputs.contains_key(&spec.name) {
                 continue;
             }
-            let source = Source::literal(former.literal.clone());
-            let spelled = input_value(&self.graph, &source);
+            let spelled = spelled_literal(&former.literal);
             let message =
                 format!("nothing stands here, which meant {spelled} in version {} of {}", former.until, kind.name());
             self.note(name_at, Some(node), Some(&spec.name), message);
@@ -146,6 +147,10 @@ impl<'a> Reader<'a> {
 
     /// The file is to say with which versions it was written, where that matters and it says something else.
     pub(super) fn kind_versions_now(&mut self, tree: &FileTree<'a>) {
+        // An embedded body is written with its file.
+        if self.standing.is_embedded() {
+            return;
+        }
         let now = self.graph.kind_versions();
         if self.rewrites.is_empty() || now == self.kind_versions {
             return;

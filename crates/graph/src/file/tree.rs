@@ -1,6 +1,7 @@
 //! The file as RON spells it, before anything is understood: names and pieces of its own text, whose places in the
 //! file are known because they are slices of it.
 
+use std::collections::HashSet;
 use std::fmt;
 
 use ron::error::SpannedResult;
@@ -8,7 +9,7 @@ use ron::value::RawValue;
 use serde::Deserialize;
 use serde::de::{DeserializeSeed, Deserializer, Error as _, MapAccess, Visitor};
 
-use crate::file::limit::{FIRST_INPUT, Meter, NODE, UNKNOWN_FIELD};
+use crate::file::limit::{BODY, FIRST_INPUT, INTERFACE, Meter, NODE, UNKNOWN_FIELD};
 
 /// Fields with a name, in the order of the file.
 pub(super) type Fields<'a> = Vec<(String, &'a RawValue)>;
@@ -20,7 +21,9 @@ pub(super) struct FileTree<'a> {
     pub(super) notes: Option<&'a RawValue>,
     /// Versions of kinds, where their defaults were other ones before.
     pub(super) kinds: Option<Entries<'a, &'a RawValue>>,
+    pub(super) parameters: Option<Entries<'a, &'a RawValue>>,
     pub(super) nodes: Option<Entries<'a, NodeTree<'a>>>,
+    pub(super) outputs: Option<Entries<'a, &'a RawValue>>,
     pub(super) layout: Option<Entries<'a, &'a RawValue>>,
     pub(super) unknown: Fields<'a>,
 }
@@ -30,21 +33,38 @@ pub(super) struct FileTree<'a> {
 pub(super) struct NodeTree<'a> {
     pub(super) kind: Option<&'a RawValue>,
     pub(super) note: Option<&'a RawValue>,
+    pub(super) muted: Option<&'a RawValue>,
     pub(super) inputs: Option<Entries<'a, &'a RawValue>>,
+    pub(super) each: Option<&'a RawValue>,
+    pub(super) feed_back: Option<&'a RawValue>,
+    pub(super) body: Option<&'a RawValue>,
     pub(super) unknown: Fields<'a>,
 }
+
+/// Brackets with named fields, in the order of the file.
+#[derive(Debug, Default)]
+pub(super) struct FieldsTree<'a>(pub(super) Fields<'a>);
 
 /// A map in the order of the file; names may occur twice.
 #[derive(Debug)]
 pub(super) struct Entries<'a, V>(pub(super) Vec<(&'a RawValue, V)>);
 
-/// Takes a file apart.
+/// Takes the text of a graph apart.
 ///
 /// # Errors
 /// It is not RON or not shaped like a graph, or it asks for more than the meter has, which then says so.
 pub(super) fn take_apart<'a>(text: &'a str, meter: &Meter) -> SpannedResult<FileTree<'a>> {
+    seeded(text, FileSeed(meter))
+}
+
+/// As [`take_apart`] for brackets with named fields.
+pub(super) fn take_fields_apart<'a>(text: &'a str, meter: &Meter) -> SpannedResult<FieldsTree<'a>> {
+    seeded(text, FieldsSeed(meter))
+}
+
+fn seeded<'a, S: DeserializeSeed<'a>>(text: &'a str, seed: S) -> SpannedResult<S::Value> {
     let mut deserializer = ron::Deserializer::from_str(text)?;
-    let tree = FileSeed(meter).deserialize(&mut deserializer);
+    let tree = seed.deserialize(&mut deserializer);
     let tree = tree.and_then(|tree| deserializer.end().map(|()| tree));
     tree.map_err(|error| deserializer.span_error(error))
 }
@@ -62,6 +82,32 @@ impl<'de> DeserializeSeed<'de> for Piece<'_> {
     }
 }
 
+/// A piece that costs as much whatever it says: a body, which is taken apart with the same meter later.
+#[derive(Clone, Copy)]
+struct Lump<'m>(&'m Meter, usize);
+
+impl<'de> DeserializeSeed<'de> for Lump<'_> {
+    type Value = &'de RawValue;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<&'de RawValue, D::Error> {
+        let piece = <&RawValue>::deserialize(deserializer)?;
+        if self.0.take(self.1) { Ok(piece) } else { Err(D::Error::custom("too much")) }
+    }
+}
+
+/// A parameter or output of a graph: a piece of text that becomes more than others.
+#[derive(Clone, Copy)]
+struct Port<'m>(&'m Meter);
+
+impl<'de> DeserializeSeed<'de> for Port<'_> {
+    type Value = &'de RawValue;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<&'de RawValue, D::Error> {
+        self.0.take(INTERFACE);
+        Piece(self.0).deserialize(deserializer)
+    }
+}
+
 struct FileSeed<'m>(&'m Meter);
 
 impl<'de> Visitor<'de> for FileSeed<'_> {
@@ -72,18 +118,18 @@ impl<'de> Visitor<'de> for FileSeed<'_> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<FileTree<'de>, A::Error> {
+        let meter = self.0;
         let mut tree = FileTree::default();
         while let Some(name) = map.next_key::<String>()? {
             match name.as_str() {
-                "version" => once(&mut tree.version, &name, &mut map, Piece(self.0))?,
-                "notes" => once(&mut tree.notes, &name, &mut map, Piece(self.0))?,
-                "kinds" => once(&mut tree.kinds, &name, &mut map, EntriesSeed(self.0, Piece(self.0)))?,
-                "nodes" => once(&mut tree.nodes, &name, &mut map, EntriesSeed(self.0, NodeSeed(self.0)))?,
-                "layout" => once(&mut tree.layout, &name, &mut map, EntriesSeed(self.0, Piece(self.0)))?,
-                _ => {
-                    self.0.take(UNKNOWN_FIELD);
-                    tree.unknown.push((name, map.next_value_seed(Piece(self.0))?));
-                }
+                "version" => once(&mut tree.version, &name, &mut map, Piece(meter))?,
+                "notes" => once(&mut tree.notes, &name, &mut map, Piece(meter))?,
+                "kinds" => once(&mut tree.kinds, &name, &mut map, EntriesSeed(meter, Piece(meter)))?,
+                "parameters" => once(&mut tree.parameters, &name, &mut map, EntriesSeed(meter, Port(meter)))?,
+                "nodes" => once(&mut tree.nodes, &name, &mut map, EntriesSeed(meter, NodeSeed(meter)))?,
+                "outputs" => once(&mut tree.outputs, &name, &mut map, EntriesSeed(meter, Port(meter)))?,
+                "layout" => once(&mut tree.layout, &name, &mut map, EntriesSeed(meter, Piece(meter)))?,
+                _ => unknown(&mut tree.unknown, name, &mut map, meter)?,
             }
         }
         Ok(tree)
@@ -101,6 +147,15 @@ where
         return Err(A::Error::custom(format!("the field \"{name}\" occurs twice")));
     }
     *slot = Some(map.next_value_seed(seed)?);
+    Ok(())
+}
+
+fn unknown<'de, A>(fields: &mut Fields<'de>, name: String, map: &mut A, meter: &Meter) -> Result<(), A::Error>
+where
+    A: MapAccess<'de>,
+{
+    meter.take(UNKNOWN_FIELD);
+    fields.push((name, map.next_value_seed(Piece(meter))?));
     Ok(())
 }
 
@@ -123,22 +178,24 @@ impl<'de> Visitor<'de> for NodeSeed<'_> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<NodeTree<'de>, A::Error> {
-        let mut tree = NodeTree::default();
-        if !self.0.take(NODE) {
+        let meter = self.0;
+        if !meter.take(NODE) {
             return Err(A::Error::custom("too much"));
         }
+        let mut tree = NodeTree::default();
         while let Some(name) = map.next_key::<String>()? {
             match name.as_str() {
-                "kind" => once(&mut tree.kind, &name, &mut map, Piece(self.0))?,
-                "note" => once(&mut tree.note, &name, &mut map, Piece(self.0))?,
+                "kind" => once(&mut tree.kind, &name, &mut map, Piece(meter))?,
+                "note" => once(&mut tree.note, &name, &mut map, Piece(meter))?,
+                "muted" => once(&mut tree.muted, &name, &mut map, Piece(meter))?,
                 "inputs" => {
-                    self.0.take(FIRST_INPUT);
-                    once(&mut tree.inputs, &name, &mut map, EntriesSeed(self.0, Piece(self.0)))?;
+                    meter.take(FIRST_INPUT);
+                    once(&mut tree.inputs, &name, &mut map, EntriesSeed(meter, Piece(meter)))?;
                 }
-                _ => {
-                    self.0.take(UNKNOWN_FIELD);
-                    tree.unknown.push((name, map.next_value_seed(Piece(self.0))?));
-                }
+                "each" => once(&mut tree.each, &name, &mut map, Piece(meter))?,
+                "feed_back" => once(&mut tree.feed_back, &name, &mut map, Piece(meter))?,
+                "body" => once(&mut tree.body, &name, &mut map, Lump(meter, BODY))?,
+                _ => unknown(&mut tree.unknown, name, &mut map, meter)?,
             }
         }
         Ok(tree)
@@ -149,6 +206,36 @@ impl<'de> DeserializeSeed<'de> for NodeSeed<'_> {
     type Value = NodeTree<'de>;
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<NodeTree<'de>, D::Error> {
+        deserializer.deserialize_struct("", &[], self)
+    }
+}
+
+struct FieldsSeed<'m>(&'m Meter);
+
+impl<'de> Visitor<'de> for FieldsSeed<'_> {
+    type Value = FieldsTree<'de>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("named fields in round brackets")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<FieldsTree<'de>, A::Error> {
+        let mut fields: Fields<'de> = Vec::new();
+        let mut known = HashSet::new();
+        while let Some(name) = map.next_key::<String>()? {
+            if !known.insert(name.clone()) {
+                return Err(A::Error::custom(format!("the field \"{name}\" occurs twice")));
+            }
+            unknown(&mut fields, name, &mut map, self.0)?;
+        }
+        Ok(FieldsTree(fields))
+    }
+}
+
+impl<'de> DeserializeSeed<'de> for FieldsSeed<'_> {
+    type Value = FieldsTree<'de>;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<FieldsTree<'de>, D::Error> {
         deserializer.deserialize_struct("", &[], self)
     }
 }

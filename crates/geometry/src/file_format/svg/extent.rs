@@ -127,10 +127,14 @@ mod tests {
 
     #[test]
     fn numbers_of_paths_are_found_however_they_are_written() {
-        for fine in ["", "M0 0L1e9-1e9", "M.5.5.5e1h1e-30", "e99", "a1 1 0 0110 10", ".", "1e", "1e+", "M1é2", "999999999.9"] {
+        for fine in
+            ["", "M0 0L1e9-1e9", "M.5.5.5e1h1e-30", "e99", "a1 1 0 0110 10", ".", "1e", "1e+", "M1é2", "999999999.9"]
+        {
             assert_eq!(too_far(fine), None, "{fine}");
         }
-        for (far, number) in [("M0 0L1e10", 1e10), ("1.5.5E+30", 5e29), ("-2000000000", 2e9), ("M1,1e999", f64::INFINITY)] {
+        for (far, number) in
+            [("M0 0L1e10", 1e10), ("1.5.5E+30", 5e29), ("-2000000000", 2e9), ("M1,1e999", f64::INFINITY)]
+        {
             assert_eq!(too_far(far), Some(number), "{far}");
         }
     }
