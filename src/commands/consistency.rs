@@ -114,7 +114,7 @@ fn perturbations(graph: &Graph, id: NodeId) -> Vec<(String, Vec<Literal>, Option
             let (now, before) = match node.source(&spec.name) {
                 Some(Source::Literal { literal, .. }) => (literal, Some(literal.clone())),
                 None => (spec.default.as_ref()?, None),
-                Some(Source::Link(_) | Source::Unread(_)) => return None,
+                Some(Source::Link(_) | Source::Parameter(_) | Source::Unread(_)) => return None,
             };
             let others = others(now, spec).into_iter().filter(|other| other != now).collect();
             Some((spec.name.clone(), others, before))

@@ -20,8 +20,9 @@ pub struct EvaluationArguments {
     /// Evaluate only this result (the name of a mesh-out or curves-out node); may be given several times.
     #[arg(long = "output", value_name = "NAME")]
     pub(super) outputs: Vec<String>,
-    /// Put a value at an input for this evaluation, such as --set legs.count=32; may be given several times.
-    #[arg(long = "set", value_name = "NODE.PORT=VALUE")]
+    /// Put a value at an input, such as --set legs.count=32, or at a parameter of the graph, such as --set
+    /// stiffness=0.8, for this evaluation; may be given several times. maquette check --parameters lists parameters.
+    #[arg(long = "set", value_name = "ADDRESS=VALUE")]
     pub(super) set: Vec<String>,
     /// Threads, at most 256; 0 takes one per core. The number changes no result.
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u16).range(0..=256))]

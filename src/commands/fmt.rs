@@ -107,12 +107,12 @@ fn one(catalogue: &Catalogue, arguments: &Arguments, path: &Path) -> Ended {
 /// Problems that the stable form would no longer have, because what they are about is not written: an input that occurs
 /// twice, a name that can't be one.
 fn lost<'a>(catalogue: &Catalogue, file: &'a GraphFile, stable: &str) -> Vec<&'a Problem> {
-    let Ok(again) = file::from_text(catalogue, stable) else {
+    let Ok(again) = GraphFile::from_bytes(catalogue, &file.path, stable.as_bytes().to_vec(), Some(file.base())) else {
         // The stable form of what was read can always be read.
         return file.loaded.problems.iter().collect();
     };
     let key = |p: &Problem| (p.node.clone(), p.port.clone(), p.message.clone());
-    let mut left: Vec<_> = again.problems.iter().map(key).collect();
+    let mut left: Vec<_> = again.loaded.problems.iter().map(key).collect();
     let gone = |problem: &&Problem| match left.iter().position(|k| *k == key(problem)) {
         Some(at) => {
             left.swap_remove(at);

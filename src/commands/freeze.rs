@@ -22,8 +22,9 @@ pub struct Arguments {
     /// Write the golden file here (.ron); without it, to stdout.
     #[arg(short = 'o', long = "write", value_name = "FILE")]
     file: Option<PathBuf>,
-    /// Put a value at an input first, such as --set even.count=8; may be given several times.
-    #[arg(long = "set", value_name = "NODE.PORT=VALUE")]
+    /// Put a value at an input first, such as --set even.count=8, or at a parameter of the graph; may be given several
+    /// times.
+    #[arg(long = "set", value_name = "ADDRESS=VALUE")]
     set: Vec<String>,
     /// How far numbers may be off, in their unit; metres for points.
     #[arg(long, value_name = "LENGTH", default_value_t = Tolerance::default().absolute)]

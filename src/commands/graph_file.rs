@@ -1,13 +1,16 @@
 //! A graph as it lies on disk.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use maquette_graph::file::{self, Loaded, Problem, Severity};
-use maquette_graph::{Catalogue, Literal, NodeId, Source};
+use maquette_graph::file::{self, Includes, Loaded, Problem, Severity};
+use maquette_graph::{Catalogue, Graph, Literal, NodeId, Source};
 
 /// A graph with the file it came from.
 pub(super) struct GraphFile {
     pub(super) path: PathBuf,
+    /// Where its relative paths start.
+    folder: PathBuf,
     /// What stands in the file.
     pub(super) text: String,
     pub(super) loaded: Loaded,
@@ -19,6 +22,11 @@ pub(super) type Refused = Vec<String>;
 impl GraphFile {
     /// Reads a graph; what is wrong with it is in its problems.
     pub(super) fn open(catalogue: &Catalogue, path: &Path) -> Result<Self, Refused> {
+        Self::open_in(catalogue, path, None)
+    }
+
+    /// As [`GraphFile::open`], with relative paths starting elsewhere than at its own folder.
+    pub(super) fn open_in(catalogue: &Catalogue, path: &Path, base: Option<&Path>) -> Result<Self, Refused> {
         let name = path.display();
         let bytes = std::fs::read(path).map_err(|error| {
             let reason = match error.kind() {
@@ -27,15 +35,25 @@ impl GraphFile {
             };
             vec![format!("{name}: error: {reason}")]
         })?;
-        Self::from_bytes(catalogue, path, bytes)
+        Self::from_bytes(catalogue, path, bytes, base)
     }
 
     /// Reads a graph from the bytes of a file.
-    pub(super) fn from_bytes(catalogue: &Catalogue, path: &Path, bytes: Vec<u8>) -> Result<Self, Refused> {
+    pub(super) fn from_bytes(
+        catalogue: &Catalogue,
+        path: &Path,
+        bytes: Vec<u8>,
+        base: Option<&Path>,
+    ) -> Result<Self, Refused> {
         let name = path.display();
-        let loaded = file::from_bytes(catalogue, &bytes).map_err(|error| vec![format!("{name}:{error}")])?;
+        let folder = base.unwrap_or(folder_of(path));
+        let read = |file: &Path| read_included(&folder.join(file));
+        let own = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let includes = Includes::new(&own, &read);
+        let loaded =
+            file::from_bytes_with(catalogue, &bytes, &includes).map_err(|error| vec![format!("{name}:{error}")])?;
         let text = String::from_utf8(bytes).map_err(|_| vec![format!("{name}: error: the file is not UTF-8 text")])?;
-        Ok(Self { path: path.to_owned(), text, loaded })
+        Ok(Self { path: path.to_owned(), folder: folder.to_owned(), text, loaded })
     }
 
     /// Reads a graph that is to be evaluated, with its warnings; refuses it where something is wrong.
@@ -48,14 +66,20 @@ impl GraphFile {
         if errors.is_empty() { Ok((file, warnings)) } else { Err(errors) }
     }
 
-    /// The problem with the file's name before it.
+    /// The problem with the file's name before it: that of an included file where that has it.
     pub(super) fn located(&self, problem: &Problem) -> String {
-        format!("{}:{problem}", self.path.display())
+        match &problem.file {
+            Some(file) => {
+                let own = Problem { file: None, ..problem.clone() };
+                format!("{}:{own}", self.base().join(file).display())
+            }
+            None => format!("{}:{problem}", self.path.display()),
+        }
     }
 
     /// The folder at which relative paths of the graph start.
     pub(super) fn base(&self) -> &Path {
-        self.path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+        &self.folder
     }
 
     /// A message about a node, in the form of all others: `file:line:column: severity: node "..", input "..": message`.
@@ -67,32 +91,83 @@ impl GraphFile {
         format!("{path}:{place} {severity}: node {name:?}{input}: {message}")
     }
 
-    /// What keeps these nodes from being evaluated although the file is sound: inputs that must be linked and are not.
+    /// What keeps these nodes from being evaluated although the file is sound: inputs that must be linked and are not, and
+    /// parameters that hold nothing.
     pub(super) fn missing_links(&self, targets: &[NodeId]) -> Vec<String> {
+        self.missing(targets, true)
+    }
+
+    /// The same for a graph that is a part of others: these give its parameters what they hold.
+    pub(super) fn missing_links_within(&self, targets: &[NodeId]) -> Vec<String> {
+        self.missing(targets, false)
+    }
+
+    fn missing(&self, targets: &[NodeId], parameters_too: bool) -> Vec<String> {
         let graph = &self.loaded.graph;
         let mut missing = Vec::new();
         for id in graph.upstream(targets) {
-            let Some((node, kind)) = graph.node(id).and_then(|n| Some((n, n.kind()?))) else { continue };
-            for input in kind.inputs() {
-                if input.default.is_none() && !input.optional && node.source(&input.name).is_none() {
-                    let message = format!("nothing is connected; link an output that gives {}", input.wire);
-                    missing.push(self.about(Severity::Error, id, Some(&input.name), &message));
-                }
+            let Some((node, kind)) = graph.node(id).and_then(|n| Some((n, n.acting_kind()?))) else { continue };
+            for input in kind.inputs().iter().filter(|input| input.default.is_none() && !input.optional) {
+                let message = match node.source(&input.name) {
+                    None => format!("nothing is connected; link an output that gives {}", input.wire),
+                    Some(Source::Parameter(name)) if parameters_too && self.holds_nothing(name) => {
+                        let wire = input.wire;
+                        format!(
+                            "the parameter \"{name}\" holds nothing here; use this graph in another, or link {wire}"
+                        )
+                    }
+                    Some(_) => continue,
+                };
+                missing.push(self.about(Severity::Error, id, Some(&input.name), &message));
             }
         }
         missing
     }
 
-    /// Files that the graph names: the node, its input, the path.
-    pub(super) fn files(&self) -> impl Iterator<Item = (NodeId, &str, PathBuf)> {
-        self.loaded.graph.nodes().flat_map(move |(id, node)| {
-            node.sources().filter_map(move |(input, source)| match source {
-                Source::Literal { literal: Literal::File(path), .. } if !path.is_empty() => {
-                    Some((id, input, self.base().join(path)))
-                }
+    fn holds_nothing(&self, parameter: &str) -> bool {
+        self.loaded.graph.parameter(parameter).is_some_and(|parameter| parameter.value().is_none())
+    }
+
+    /// Those of the nodes that can be evaluated without the graphs that this one is a part of.
+    pub(super) fn given(&self, nodes: &[NodeId]) -> Vec<NodeId> {
+        let graph = &self.loaded.graph;
+        let lacks = |id: &NodeId| {
+            let mut sources = graph.node(*id).into_iter().flat_map(|node| node.sources());
+            sources.any(|(_, source)| matches!(source, Source::Parameter(name) if self.holds_nothing(name)))
+        };
+        if graph.outputs().len() == 0 {
+            return nodes.to_vec();
+        }
+        let lacking: BTreeSet<NodeId> = nodes.iter().copied().filter(lacks).collect();
+        nodes.iter().copied().filter(|id| graph.upstream(&[*id]).iter().all(|above| !lacking.contains(above))).collect()
+    }
+
+    /// Files that the graph is made of and names: included graphs, and files at inputs and parameters, in bodies too.
+    pub(super) fn files(&self) -> Vec<PathBuf> {
+        let mut files: Vec<PathBuf> = self.loaded.included.iter().map(|file| self.base().join(file)).collect();
+        let mut graphs: Vec<(&Graph, PathBuf)> = vec![(&self.loaded.graph, self.base().to_owned())];
+        // Parts are shared, and looked at once from each folder.
+        let mut seen = BTreeSet::new();
+        while let Some((graph, folder)) = graphs.pop() {
+            if !seen.insert((std::ptr::from_ref(graph), folder.clone())) {
+                continue;
+            }
+            let parameters = graph.parameters().filter_map(|parameter| parameter.value());
+            let inputs = graph.nodes().flat_map(|(_, node)| node.sources());
+            let inputs = inputs.filter_map(|(_, source)| match source {
+                Source::Literal { literal, .. } => Some(literal),
+                Source::Link(_) | Source::Parameter(_) | Source::Unread(_) => None,
+            });
+            files.extend(parameters.chain(inputs).filter_map(|literal| match literal {
+                Literal::File(path) if !path.is_empty() => Some(folder.join(path)),
                 _ => None,
-            })
-        })
+            }));
+            let bodies = graph.nodes().filter_map(|(_, node)| node.body());
+            graphs.extend(bodies.filter_map(|body| Some((body.graph()?, folder.join(body.folder())))));
+        }
+        files.sort();
+        files.dedup();
+        files
     }
 
     /// Files that the graph names and that are not there, and files and sketches that it leaves empty.
@@ -103,6 +178,9 @@ impl GraphFile {
                 let literal = match node.source(&input.name) {
                     Some(Source::Literal { literal, .. }) => Some(literal),
                     None => input.default.as_ref(),
+                    Some(Source::Parameter(name)) => {
+                        self.loaded.graph.parameter(name).and_then(|parameter| parameter.value())
+                    }
                     Some(Source::Link(_) | Source::Unread(_)) => None,
                 };
                 let message = match literal {
@@ -120,4 +198,25 @@ impl GraphFile {
         }
         missing
     }
+}
+
+/// The folder at which relative paths of a graph's file start.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// The bytes of a graph that another one includes, or in words for artists why there are none.
+fn read_included(path: &Path) -> Result<Vec<u8>, String> {
+    // Asked first, because to open a pipe may take forever.
+    match std::fs::metadata(path) {
+        Ok(data) if !data.is_file() => return Err("it is not a file".to_owned()),
+        _ => {}
+    }
+    std::fs::read(path).map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound => {
+            "there is no such file: put it there, or correct the path (it starts at the folder of the file that names it)"
+                .to_owned()
+        }
+        _ => format!("it can't be read: {error}"),
+    })
 }

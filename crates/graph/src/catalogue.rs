@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use crate::body::built_in;
 use crate::freeze::{Freeze, Freezer};
+use crate::list::{Collection, ListType};
 use crate::literal::{Choice, Colour, FilePath, Strokes, Vector};
 use crate::node_kind::NodeKind;
 use crate::port::exact_number;
@@ -33,6 +35,8 @@ pub struct Catalogue {
     kinds: BTreeMap<String, Arc<NodeKind>>,
     wires: BTreeMap<&'static str, WireType>,
     conversions: Vec<Conversion>,
+    pub(crate) lists: Vec<ListType>,
+    pub(crate) collections: Vec<Collection>,
     freezers: BTreeMap<&'static str, (WireType, Freezer)>,
 }
 
@@ -68,6 +72,9 @@ pub enum CatalogueError {
     /// Two conversions for one pair.
     #[error("a conversion from {0} to {1} is declared twice")]
     DuplicateConversion(&'static str, &'static str),
+    /// Two lists of, or ways to collect, one type.
+    #[error("how values of type {0} are listed or collected is declared twice")]
+    DuplicateList(&'static str),
 }
 
 impl Default for Catalogue {
@@ -77,10 +84,18 @@ impl Default for Catalogue {
 }
 
 impl Catalogue {
-    /// A catalogue with the built-in wire types and conversions and no kinds.
+    /// A catalogue with the built-in wire types and conversions, and no kinds but those that have a body, `graph` and
+    /// `repeat`.
     pub fn new() -> Self {
-        let mut catalogue =
-            Self { kinds: BTreeMap::new(), wires: BTreeMap::new(), conversions: Vec::new(), freezers: BTreeMap::new() };
+        let kinds = built_in().into_iter().map(|kind| (kind.name().to_owned(), Arc::new(kind))).collect();
+        let mut catalogue = Self {
+            kinds,
+            wires: BTreeMap::new(),
+            conversions: Vec::new(),
+            lists: Vec::new(),
+            collections: Vec::new(),
+            freezers: BTreeMap::new(),
+        };
         let built_in = [
             WireType::of::<f64>(),
             WireType::of::<i64>(),
@@ -144,12 +159,23 @@ impl Catalogue {
         }
         let wires = kind.inputs().iter().map(|i| i.wire).chain(kind.outputs().iter().map(|o| o.wire));
         for wire in wires {
-            if *self.wires.entry(wire.name()).or_insert(wire) != wire {
-                return Err(CatalogueError::DuplicateWire(wire.name().to_owned()));
-            }
+            self.add_wire(wire)?;
         }
         self.kinds.insert(name, Arc::new(kind));
         Ok(())
+    }
+
+    pub(crate) fn add_wire(&mut self, wire: WireType) -> Result<(), CatalogueError> {
+        if *self.wires.entry(wire.name()).or_insert(wire) == wire {
+            Ok(())
+        } else {
+            Err(CatalogueError::DuplicateWire(wire.name().to_owned()))
+        }
+    }
+
+    /// The wire type of that name.
+    pub fn wire(&self, name: &str) -> Option<WireType> {
+        self.wires.get(name).copied()
     }
 
     fn add_conversion<A: Wire, B: Wire>(

@@ -111,7 +111,9 @@ fn constants(catalogue: &Catalogue, wire: WireType, prefix: &str) -> Vec<String>
 }
 
 fn shipped() -> Vec<String> {
-    maquette_nodes::catalogue().unwrap().kinds().map(|kind| kind.name().to_owned()).collect()
+    // Those with a body are the engine's.
+    let catalogue = maquette_nodes::catalogue().unwrap();
+    catalogue.kinds().filter(|kind| !kind.has_body()).map(|kind| kind.name().to_owned()).collect()
 }
 
 /// A graph with one node of the kind under test, everything it needs linked or set.

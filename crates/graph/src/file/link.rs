@@ -58,28 +58,34 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The output that a link comes from, where it exists and fits. Otherwise reports why not, and keeps the text.
-    fn resolve(&mut self, link: &PendingLink<'a>) -> Option<Link> {
-        let address = link.address.as_str();
+    /// The node and output that an address such as `node.output` means, or what is wrong with it, and what to do.
+    pub(super) fn addressed<'b>(&mut self, address: &'b str) -> Result<(NodeId, &'b str, &'b str), (String, String)> {
         // A node's name holds no dot, unless it was misspelt so; then the output is what comes behind the last one.
         let by_name = address.split_once('.').and_then(|(name, output)| Some((self.find(name)?, name, output)));
         let by_last = || address.rsplit_once('.').and_then(|(name, output)| Some((self.find(name)?, name, output)));
-        let Some((node, name, output)) = by_name.or_else(by_last) else {
-            match address.rsplit_once('.') {
-                None => {
-                    let message = format!("\"{address}\" is not an address");
-                    self.refuse(link, message, "write Link(\"node.output\")");
-                }
-                Some((name, _)) => {
-                    let graph = &self.graph;
-                    let remedy = match self.suggestions.get(name, || graph.suggest(name).map(str::to_owned)) {
-                        Some(suggestion) => format!("did you mean \"{suggestion}\"?"),
-                        None => "add the node, or remove the link".to_owned(),
-                    };
-                    self.refuse(link, format!("it is linked to \"{name}\", and no node has that name"), &remedy);
-                }
+        if let Some(found) = by_name.or_else(by_last) {
+            return Ok(found);
+        }
+        let Some((name, _)) = address.rsplit_once('.') else {
+            return Err((format!("\"{address}\" is not an address"), "write Link(\"node.output\")".to_owned()));
+        };
+        let graph = &self.graph;
+        let remedy = match self.suggestions.get(name, || graph.suggest(name).map(str::to_owned)) {
+            Some(suggestion) => format!("did you mean \"{suggestion}\"?"),
+            None => "add the node, or remove the link".to_owned(),
+        };
+        Err((format!("it is linked to \"{name}\", and no node has that name"), remedy))
+    }
+
+    /// The output that a link comes from, where it exists and fits. Otherwise reports why not, and keeps the text.
+    fn resolve(&mut self, link: &PendingLink<'a>) -> Option<Link> {
+        let address = link.address.as_str();
+        let (node, name, output) = match self.addressed(address) {
+            Ok(found) => found,
+            Err((message, remedy)) => {
+                self.refuse(link, message, &remedy);
+                return None;
             }
-            return None;
         };
         match self.graph.check_ports(self.catalogue, node, output, link.to, &link.input) {
             Ok(()) => return Some(Link { node, output: output.to_owned() }),

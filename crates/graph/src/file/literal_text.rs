@@ -11,11 +11,14 @@ pub(crate) enum Spelled {
     Literal(Literal),
     /// "node.output"
     Link(String),
+    /// The name of a parameter of the graph.
+    Parameter(String),
 }
 
 #[derive(Deserialize)]
 enum Tagged {
     Link(String),
+    Parameter(String),
     Text(String),
     Choice(String),
     File(String),
@@ -34,8 +37,8 @@ pub struct LiteralError {
     pub message: String,
 }
 
-const EXPECTED: &str = "write a number, true, false, Link(\"node.output\"), Text(\"...\"), Choice(\"...\"), \
-                        Vector(x, y, z), Colour(r, g, b, a), File(\"...\") or Strokes([...])";
+const EXPECTED: &str = "write a number, true, false, Link(\"node.output\"), Parameter(\"...\"), Text(\"...\"), \
+                        Choice(\"...\"), Vector(x, y, z), Colour(r, g, b, a), File(\"...\") or Strokes([...])";
 
 /// Reads a literal as a file spells it, such as `0.5`, `Choice("smooth")` or `Vector(0.0, 1.0, 0.0)`.
 ///
@@ -46,6 +49,9 @@ pub fn parse_literal(text: &str) -> Result<Literal, LiteralError> {
         Spelled::Literal(literal) => Ok(literal),
         Spelled::Link(_) => {
             Err(LiteralError { offset: 0, message: "a link can't stand here; write a value".to_owned() })
+        }
+        Spelled::Parameter(_) => {
+            Err(LiteralError { offset: 0, message: "a parameter can't stand here; write a value".to_owned() })
         }
     }
 }
@@ -75,6 +81,7 @@ pub(crate) fn parse(text: &str) -> Result<Spelled, LiteralError> {
         _ if text == "true" || text == "false" => Literal::Boolean(text == "true"),
         _ => match ron::from_str(text).map_err(fail)? {
             Tagged::Link(address) => return Ok(Spelled::Link(address)),
+            Tagged::Parameter(name) => return Ok(Spelled::Parameter(name)),
             Tagged::Text(text) => Literal::Text(text),
             Tagged::Choice(option) => Literal::Choice(option),
             Tagged::File(path) => Literal::File(path),

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, HashMap};
 use ron::value::RawValue;
 
 use crate::catalogue::{Catalogue, closest};
+use crate::file::include::{Includes, Inclusion, Standing};
 use crate::file::link::{PendingLink, Suggestions};
 use crate::file::literal_text::{Spelled, parse};
 use crate::file::place::LineIndex;
@@ -19,8 +20,10 @@ use crate::value::KeyHasherBuilder;
 pub struct Loaded {
     /// The graph; with placeholders for what was not understood.
     pub graph: Graph,
-    /// Everything that is wrong, in the order of the file.
+    /// Everything that is wrong, in the order of the file; what is wrong in included files comes behind.
     pub problems: Vec<Problem>,
+    /// The files that were included, or were to be, seen from the graph's folder; each once, by name.
+    pub included: Vec<String>,
     places: HashMap<NodeId, Place, KeyHasherBuilder>,
 }
 
@@ -49,15 +52,25 @@ impl Loaded {
 /// Only where nothing can be read: not UTF-8, not RON, not shaped like a graph. Everything else is in
 /// [`Loaded::problems`].
 pub fn from_bytes(catalogue: &Catalogue, bytes: &[u8]) -> Result<Loaded, FileError> {
-    match std::str::from_utf8(bytes) {
-        Ok(text) => from_text(catalogue, text),
-        Err(error) => {
-            let good = std::str::from_utf8(&bytes[..error.valid_up_to()]).unwrap_or_default();
-            let good = good.strip_prefix(BYTE_ORDER_MARK).unwrap_or(good);
-            let (line, column) = LineIndex::new(good).place(good.len());
-            Err(FileError::NotUtf8 { line, column })
-        }
-    }
+    from_bytes_with(catalogue, bytes, &Includes::none())
+}
+
+/// As [`from_bytes`], for a graph that may include other files.
+///
+/// # Errors
+/// As [`from_bytes`].
+pub fn from_bytes_with(catalogue: &Catalogue, bytes: &[u8], includes: &Includes<'_>) -> Result<Loaded, FileError> {
+    from_text_with(catalogue, utf8(bytes)?, includes)
+}
+
+/// The bytes as text.
+pub(super) fn utf8(bytes: &[u8]) -> Result<&str, FileError> {
+    std::str::from_utf8(bytes).map_err(|error| {
+        let good = std::str::from_utf8(&bytes[..error.valid_up_to()]).unwrap_or_default();
+        let good = good.strip_prefix(BYTE_ORDER_MARK).unwrap_or(good);
+        let (line, column) = LineIndex::new(good).place(good.len());
+        FileError::NotUtf8 { line, column }
+    })
 }
 
 const BYTE_ORDER_MARK: char = '\u{feff}';
@@ -67,33 +80,46 @@ const BYTE_ORDER_MARK: char = '\u{feff}';
 /// # Errors
 /// As [`from_bytes`].
 pub fn from_text(catalogue: &Catalogue, text: &str) -> Result<Loaded, FileError> {
+    from_text_with(catalogue, text, &Includes::none())
+}
+
+/// As [`from_text`], for a graph that may include other files.
+///
+/// # Errors
+/// As [`from_bytes`].
+pub fn from_text_with(catalogue: &Catalogue, text: &str, includes: &Includes<'_>) -> Result<Loaded, FileError> {
+    let inclusion = Inclusion::new(catalogue, includes);
+    let Read { graph, mut problems, places } = inclusion.read(text, &Standing::of_root(includes))?;
+    problems.sort_by_key(|p| (p.line, p.column));
+    let (mut elsewhere, included) = inclusion.finish();
+    problems.append(&mut elsewhere);
+    Ok(Loaded { graph, problems, included, places })
+}
+
+/// What came of one graph of a file.
+pub(super) struct Read {
+    pub(super) graph: Graph,
+    pub(super) problems: Vec<Problem>,
+    places: HashMap<NodeId, Place, KeyHasherBuilder>,
+}
+
+/// Reads the text of a whole file.
+pub(super) fn read_file(inclusion: &Inclusion<'_>, text: &str, standing: &Standing) -> Result<Read, FileError> {
     let text = text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text);
     let lines = LineIndex::new(text);
     let tree: FileTree<'_> = ron::from_str(text).map_err(|error| syntax_error(text, &lines, &error))?;
-    let mut reader = Reader {
-        catalogue,
-        text,
-        lines,
-        graph: Graph::new(),
-        suggestions: Suggestions::default(),
-        problems: Vec::new(),
-        places: HashMap::default(),
-        links: Vec::new(),
-        kept_as: HashMap::new(),
-        next_number: HashMap::new(),
-    };
-    reader.read(&tree);
-    reader.problems.sort_by_key(|p| (p.line, p.column));
-    Ok(Loaded { graph: reader.graph, problems: reader.problems, places: reader.places })
+    Ok(Reader::new(inclusion, text, &lines, standing).read(&tree))
 }
 
 pub(super) struct Reader<'a> {
     pub(super) catalogue: &'a Catalogue,
-    text: &'a str,
-    lines: LineIndex,
+    pub(super) inclusion: &'a Inclusion<'a>,
+    pub(super) text: &'a str,
+    pub(super) lines: &'a LineIndex,
+    pub(super) standing: &'a Standing,
     pub(super) graph: Graph,
     pub(super) suggestions: Suggestions,
-    problems: Vec<Problem>,
+    pub(super) problems: Vec<Problem>,
     places: HashMap<NodeId, Place, KeyHasherBuilder>,
     links: Vec<PendingLink<'a>>,
     /// Nodes whose names can't be names, by what the file calls them.
@@ -103,6 +129,28 @@ pub(super) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
+    pub(super) fn new(
+        inclusion: &'a Inclusion<'a>,
+        text: &'a str,
+        lines: &'a LineIndex,
+        standing: &'a Standing,
+    ) -> Self {
+        Self {
+            catalogue: inclusion.catalogue,
+            inclusion,
+            text,
+            lines,
+            standing,
+            graph: Graph::new(),
+            suggestions: Suggestions::default(),
+            problems: Vec::new(),
+            places: HashMap::default(),
+            links: Vec::new(),
+            kept_as: HashMap::new(),
+            next_number: HashMap::new(),
+        }
+    }
+
     /// Byte of a piece of the text within the text.
     pub(super) fn offset(&self, piece: &str) -> usize {
         (piece.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize)
@@ -118,9 +166,10 @@ impl<'a> Reader<'a> {
         let [message, remedy] = what;
         self.problems.push(Problem {
             severity,
+            file: self.standing.file.clone(),
             line,
             column,
-            node: node.map(str::to_owned),
+            node: self.standing.path_of(node),
             port: port.map(str::to_owned),
             message,
             remedy,
@@ -131,12 +180,12 @@ impl<'a> Reader<'a> {
         self.report(Severity::Error, at, node, port, [message, remedy.to_owned()]);
     }
 
-    fn warning(&mut self, at: usize, node: Option<&str>, message: String, remedy: &str) {
+    pub(super) fn warning(&mut self, at: usize, node: Option<&str>, message: String, remedy: &str) {
         self.report(Severity::Warning, at, node, None, [message, remedy.to_owned()]);
     }
 
     /// A name, before a colon. One that is not in quotes is taken as it is.
-    fn name(&mut self, raw: &'a RawValue, node: Option<&str>, what: &str) -> String {
+    pub(super) fn name(&mut self, raw: &'a RawValue, node: Option<&str>, what: &str) -> String {
         let piece = trimmed(raw);
         ron::from_str(piece).unwrap_or_else(|_| {
             let at = self.offset(piece);
@@ -146,7 +195,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The text of a known field; where it is none, the field goes to those that are kept as they are.
-    fn field(
+    pub(super) fn field(
         &mut self,
         raw: Option<&'a RawValue>,
         node: Option<&str>,
@@ -163,17 +212,22 @@ impl<'a> Reader<'a> {
         text
     }
 
-    fn read(&mut self, tree: &FileTree<'a>) {
-        if let Some(at) = attributes(self.text, tree) {
-            let message = "the attribute #![...] has no meaning in a graph".to_owned();
-            self.warning(at, None, message, "remove it; it is not kept");
+    pub(super) fn read(mut self, tree: &FileTree<'a>) -> Read {
+        if self.standing.is_embedded() {
+            self.no_version(tree);
+        } else {
+            if let Some(at) = attributes(self.text, tree) {
+                let message = "the attribute #![...] has no meaning in a graph".to_owned();
+                self.warning(at, None, message, "remove it; it is not kept");
+            }
+            self.version(tree);
         }
-        self.version(tree);
         let mut kept = Vec::new();
         if let Some(notes) = self.field(tree.notes, None, "notes", &mut kept) {
             self.graph.notes = notes;
         }
         self.graph.unknown_fields.append(&mut kept);
+        self.parameters(tree);
         match &tree.nodes {
             None => self.error(0, None, None, "the field \"nodes\" is missing".to_owned(), "add nodes: {}"),
             Some(nodes) => {
@@ -184,15 +238,27 @@ impl<'a> Reader<'a> {
         }
         let links = std::mem::take(&mut self.links);
         self.connect_all(&links);
+        self.outputs(tree);
         self.layout(tree);
         for (name, raw) in &tree.unknown {
             let piece = trimmed(raw);
             self.graph.unknown_fields.push((name.clone(), piece.to_owned()));
             self.unknown_field(None, name, piece);
         }
+        Read { graph: self.graph, problems: self.problems, places: self.places }
     }
 
-    fn unknown_field(&mut self, node: Option<&str>, field: &str, piece: &str) {
+    /// An embedded graph has the version of its file.
+    fn no_version(&mut self, tree: &FileTree<'a>) {
+        if let Some(raw) = tree.version {
+            let piece = trimmed(raw);
+            self.graph.unknown_fields.push(("version".to_owned(), piece.to_owned()));
+            let message = "an embedded graph has no version of its own".to_owned();
+            self.warning(self.offset(piece), None, message, "remove it; it is kept");
+        }
+    }
+
+    pub(super) fn unknown_field(&mut self, node: Option<&str>, field: &str, piece: &str) {
         let message = format!("the field \"{field}\" is unknown to this version");
         let at = self.offset(piece);
         // RON gives the name without its place; it stands before the value, but for a comment between them.
@@ -242,6 +308,7 @@ impl<'a> Reader<'a> {
             self.error(at, Some(&wanted), None, format!("the node kind \"{kind}\" is unknown"), &remedy);
         }
         let note = self.field(tree.note, Some(&wanted), "note", &mut kept).unwrap_or_default();
+        self.body(id, &wanted, tree, &mut kept);
         for (input, raw) in tree.inputs.iter().flat_map(|inputs| &inputs.0) {
             self.input(id, &wanted, input, raw);
         }
@@ -250,9 +317,11 @@ impl<'a> Reader<'a> {
             kept.push((field.clone(), piece.to_owned()));
             self.unknown_field(Some(&wanted), field, piece);
         }
+        let muted = self.muted(tree, &wanted, &mut kept);
         if let Some(node) = self.graph.nodes.get_mut(&id) {
             node.note = note;
             node.unknown_fields = kept;
+            node.set_muted(muted);
         }
     }
 
@@ -321,6 +390,7 @@ impl<'a> Reader<'a> {
         let mut unread = None;
         match (parse(piece), spec) {
             (Ok(Spelled::Link(address)), _) => self.links.push(PendingLink { to: id, input, address, raw }),
+            (Ok(Spelled::Parameter(parameter)), _) => self.use_parameter(id, node, &input, &parameter, piece),
             // What an unknown input means is not known either: its text stays, digit for digit.
             (_, None) => drop(self.graph.put(id, &input, Some(Source::Unread(piece.to_owned())))),
             (Ok(Spelled::Literal(literal)), Some(spec)) => match spec.refuses(&literal) {

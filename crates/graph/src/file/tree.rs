@@ -16,7 +16,9 @@ pub(super) type Fields<'a> = Vec<(String, &'a RawValue)>;
 pub(super) struct FileTree<'a> {
     pub(super) version: Option<&'a RawValue>,
     pub(super) notes: Option<&'a RawValue>,
+    pub(super) parameters: Option<Entries<'a, &'a RawValue>>,
     pub(super) nodes: Option<Entries<'a, NodeTree<'a>>>,
+    pub(super) outputs: Option<Entries<'a, &'a RawValue>>,
     pub(super) layout: Option<Entries<'a, &'a RawValue>>,
     pub(super) unknown: Fields<'a>,
 }
@@ -26,9 +28,17 @@ pub(super) struct FileTree<'a> {
 pub(super) struct NodeTree<'a> {
     pub(super) kind: Option<&'a RawValue>,
     pub(super) note: Option<&'a RawValue>,
+    pub(super) muted: Option<&'a RawValue>,
     pub(super) inputs: Option<Entries<'a, &'a RawValue>>,
+    pub(super) each: Option<&'a RawValue>,
+    pub(super) feed_back: Option<&'a RawValue>,
+    pub(super) body: Option<&'a RawValue>,
     pub(super) unknown: Fields<'a>,
 }
+
+/// Brackets with named fields, in the order of the file.
+#[derive(Debug, Default)]
+pub(super) struct FieldsTree<'a>(pub(super) Fields<'a>);
 
 /// A map in the order of the file; names may occur twice.
 #[derive(Debug)]
@@ -49,7 +59,9 @@ impl<'de> Visitor<'de> for FileVisitor {
             match name.as_str() {
                 "version" => once(&mut tree.version, &name, &mut map)?,
                 "notes" => once(&mut tree.notes, &name, &mut map)?,
+                "parameters" => once(&mut tree.parameters, &name, &mut map)?,
                 "nodes" => once(&mut tree.nodes, &name, &mut map)?,
+                "outputs" => once(&mut tree.outputs, &name, &mut map)?,
                 "layout" => once(&mut tree.layout, &name, &mut map)?,
                 _ => tree.unknown.push((name, map.next_value()?)),
             }
@@ -93,7 +105,11 @@ impl<'de> Visitor<'de> for NodeVisitor {
             match name.as_str() {
                 "kind" => once(&mut tree.kind, &name, &mut map)?,
                 "note" => once(&mut tree.note, &name, &mut map)?,
+                "muted" => once(&mut tree.muted, &name, &mut map)?,
                 "inputs" => once(&mut tree.inputs, &name, &mut map)?,
+                "each" => once(&mut tree.each, &name, &mut map)?,
+                "feed_back" => once(&mut tree.feed_back, &name, &mut map)?,
+                "body" => once(&mut tree.body, &name, &mut map)?,
                 _ => tree.unknown.push((name, map.next_value()?)),
             }
         }
@@ -104,6 +120,33 @@ impl<'de> Visitor<'de> for NodeVisitor {
 impl<'de: 'a, 'a> Deserialize<'de> for NodeTree<'a> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_struct("", &[], NodeVisitor)
+    }
+}
+
+struct FieldsVisitor;
+
+impl<'de> Visitor<'de> for FieldsVisitor {
+    type Value = FieldsTree<'de>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("named fields in round brackets")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<FieldsTree<'de>, A::Error> {
+        let mut fields: Fields<'de> = Vec::new();
+        while let Some(name) = map.next_key::<String>()? {
+            if fields.iter().any(|(known, _)| *known == name) {
+                return Err(A::Error::custom(format!("the field \"{name}\" occurs twice")));
+            }
+            fields.push((name, map.next_value()?));
+        }
+        Ok(FieldsTree(fields))
+    }
+}
+
+impl<'de: 'a, 'a> Deserialize<'de> for FieldsTree<'a> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_struct("", &[], FieldsVisitor)
     }
 }
 

@@ -60,6 +60,12 @@ pub enum FreezeError {
         /// Its type.
         wire: WireType,
     },
+    /// The kind does nothing without the graph within.
+    #[error("a node of kind {0} does nothing by itself: open the graph within, and freeze a node there")]
+    HasBody(String),
+    /// The node does not do its work.
+    #[error("the node is muted: unmute it first")]
+    Muted,
     /// The text is no golden file.
     #[error("{line}:{column}: this is no golden file: {message}; freeze the node again")]
     Syntax {
@@ -132,7 +138,14 @@ impl Golden {
         base: &Path,
         tolerance: Tolerance,
     ) -> Result<Self, FreezeError> {
-        let kind = graph.node(node).and_then(|n| n.kind()).cloned().ok_or(FreezeError::NoNode)?;
+        let found = graph.node(node).ok_or(FreezeError::NoNode)?;
+        let kind = found.kind().cloned().ok_or(FreezeError::NoNode)?;
+        if kind.has_body() {
+            return Err(FreezeError::HasBody(kind.name().to_owned()));
+        }
+        if found.is_muted() {
+            return Err(FreezeError::Muted);
+        }
         let Seen { inputs, files, outputs } = watched(catalogue, graph, node, &kind, base)?;
         let frozen = |name: &str, wire: WireType, value: &Value| {
             let port = || format!("\"{name}\"");
