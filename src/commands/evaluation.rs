@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 
 use maquette_graph::file::Severity;
 use maquette_graph::{
-    CancelToken, Catalogue, Evaluation, Evaluator, EvaluatorOptions, Literal, NodeId, OutcomeState, Request, WireType,
+    CancelToken, Catalogue, Evaluation, Evaluator, EvaluatorOptions, NodeId, OutcomeState, Request, WireType,
 };
 
+use super::console;
 use super::graph_file::GraphFile;
 use super::progress_bar::Progress;
 use super::project::ProjectArguments;
-use super::{console, overrides};
 
 /// What is evaluated, and how.
 #[derive(clap::Args)]
