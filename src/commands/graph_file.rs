@@ -177,7 +177,12 @@ impl GraphFile {
     pub(super) fn files(&self) -> Vec<PathBuf> {
         let mut files: Vec<PathBuf> = self.loaded.included.iter().map(|file| self.base().join(file)).collect();
         let mut graphs: Vec<(&Graph, PathBuf)> = vec![(&self.loaded.graph, self.base().to_owned())];
+        // Parts are shared, and looked at once from each folder.
+        let mut seen = BTreeSet::new();
         while let Some((graph, folder)) = graphs.pop() {
+            if !seen.insert((std::ptr::from_ref(graph), folder.clone())) {
+                continue;
+            }
             let parameters = graph.parameters().filter_map(|parameter| parameter.value());
             let inputs = graph.nodes().flat_map(|(_, node)| node.sources());
             let inputs = inputs.filter_map(|(_, source)| match source {

@@ -4,6 +4,11 @@
 //! `cargo test` tries a few thousand inputs, always the same ones. `MAQUETTE_FUZZ_SECONDS=600 cargo test fuzz` tries new
 //! ones for ten minutes each and prints where it puts an input that breaks a promise.
 #![allow(dead_code, reason = "each test file takes what it needs")]
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "what a long run found is read by the one who started it"
+)]
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -236,14 +241,17 @@ fn kept(name: &str, input: &[u8]) -> PathBuf {
     path
 }
 
+/// The input that is tried, and since when.
+type Current = Arc<Mutex<Option<(Instant, Vec<u8>)>>>;
+
 /// Ends the process where an input takes forever, and keeps that input.
 struct Guard {
-    current: Arc<Mutex<Option<(Instant, Vec<u8>)>>>,
+    current: Current,
 }
 
 impl Guard {
     fn new(name: &str) -> Self {
-        let current: Arc<Mutex<Option<(Instant, Vec<u8>)>>> = Arc::default();
+        let current = Current::default();
         let (watched, name) = (Arc::downgrade(&current), name.to_owned());
         std::thread::spawn(move || {
             while let Some(current) = watched.upgrade() {

@@ -16,8 +16,8 @@ use crate::value::{ContentHash, ContentHasher, WireType};
 pub(crate) const GRAPH: &str = "graph";
 /// Name of the kind that evaluates a graph many times.
 pub(crate) const REPEAT: &str = "repeat";
-/// Bodies within bodies, at most. What is embedded so deep can still be read by RON, which stops at 128 brackets.
-pub(crate) const DEEPEST: usize = 32;
+/// Bodies within bodies, at most. What is embedded so deep can still be read: RON stops where brackets are nested deeper.
+pub(crate) const DEEPEST: usize = 16;
 /// The input of a `repeat` that says how often.
 pub(crate) const COUNT: &str = "count";
 /// The parameter of a repeated body that counts from 0.
@@ -393,12 +393,18 @@ fn declare_measures(kind: &mut NodeKind, graph: &Graph) {
     let targets: Vec<_> = graph.outputs().filter_map(|output| Some(output.link()?.node)).collect();
     for node in graph.upstream(&targets).into_iter().filter_map(|id| graph.node(id)) {
         let Some(measuring) = node.acting_kind() else { continue };
+        if kind.figures.len().max(kind.tables.len()) > MOST_MEASURES {
+            return;
+        }
         let figures = measuring.figures().iter();
         kind.figures.extend(figures.map(|spec| FigureSpec { name: inside(node.name(), &spec.name), ..spec.clone() }));
         let tables = measuring.tables().iter();
         kind.tables.extend(tables.map(|spec| TableSpec { name: inside(node.name(), &spec.name), ..spec.clone() }));
     }
 }
+
+/// A kind declares at most about so many figures of the nodes within: parts of parts of parts could have billions.
+const MOST_MEASURES: usize = 2_000;
 
 /// Whether a parameter of a repeated body counts the times.
 pub(crate) fn is_index(spec: &InputSpec) -> bool {

@@ -159,6 +159,19 @@ impl Report {
         self.tables.extend(tables);
     }
 
+    /// Keeps what a body says within bounds: parts of parts of parts could say the same a billion times.
+    pub(crate) fn bounded(mut self) -> Self {
+        let said = [self.notes.len(), self.warnings.len(), self.figures.len(), self.tables.len()];
+        if said.into_iter().any(|count| count > MOST_SAID) {
+            self.notes.truncate(MOST_SAID);
+            self.warnings.truncate(MOST_SAID);
+            self.figures.truncate(MOST_SAID);
+            self.tables.truncate(MOST_SAID);
+            self.warnings.push(format!("the nodes within say more than {MOST_SAID} things; the others are left out"));
+        }
+        self
+    }
+
     /// What was said first, and behind it what was said later.
     pub(crate) fn followed_by(&self, later: &Self) -> Self {
         let mut both = self.clone();
@@ -169,6 +182,9 @@ impl Report {
         both
     }
 }
+
+/// Notes that a body passes on at most, and likewise warnings, figures and tables.
+const MOST_SAID: usize = 100_000;
 
 /// Name of a figure or table of a node within a body.
 pub(crate) fn inside(node: &str, name: &str) -> String {

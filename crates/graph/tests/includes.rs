@@ -149,7 +149,7 @@ fn a_chain_that_is_too_long_is_refused() {
         .collect();
     let files: Vec<(&str, &str)> = files.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect();
     let said = problems(&files);
-    assert!(said[0].contains("bodies are nested more than 32 deep"), "{said:?}");
+    assert!(said[0].contains("bodies are nested more than 16 deep"), "{said:?}");
 }
 
 #[test]

@@ -333,7 +333,8 @@ impl<'a> Runner<'a> {
         files.dedup();
         let files = if files.is_empty() { None } else { Some(files.into()) };
         let duration = composite.begun.elapsed();
-        let entry = Arc::new(Entry { result: Ok(values.into()), report: self.shared(report), duration, files });
+        let entry =
+            Arc::new(Entry { result: Ok(values.into()), report: self.shared(report.bounded()), duration, files });
         let key = Key { hash: composite.key.hash, files: entry.files.clone() };
         self.memo.insert(key.hash, entry.clone());
         let ended = Ended::of(key, &entry, true);
@@ -411,6 +412,7 @@ fn gather(composite: &Composite<'_>, run: &Run<'_>, index: usize) -> Gave {
             Ended::Cancelled => cancelled = true,
         }
     }
+    gave.report = gave.report.bounded();
     if let Some((id, failure)) = failures.first() {
         let more = failures.len() - 1;
         let at = composite.is_repeated().then_some(index);

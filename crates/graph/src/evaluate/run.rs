@@ -157,9 +157,9 @@ impl<'a> Runner<'a> {
     /// Carries out a plan on this thread: the steps in their order, and the run of a body when its step comes.
     fn run_alone(&self, run: &Arc<Run<'a>>) {
         let mut runs = vec![(run.clone(), 0)];
+        let mut led = Led::default();
         while let Some((run, next)) = runs.last_mut() {
             let (run, step) = (run.clone(), *next);
-            let mut led = Led::default();
             if step < run.states.len() {
                 *next += 1;
                 self.run_step(&run, step, &mut led);
@@ -167,7 +167,8 @@ impl<'a> Runner<'a> {
                 runs.pop();
                 self.run_is_over(&run, &mut led);
             }
-            runs.extend(led.started.into_iter().rev().map(|run| (run, 0)));
+            led.ended.clear();
+            runs.extend(led.started.drain(..).rev().map(|run| (run, 0)));
         }
     }
 
@@ -176,20 +177,20 @@ impl<'a> Runner<'a> {
         'a: 's,
     {
         let mut next = Some(task);
+        let mut led = Led::default();
         while let Some(Task { run, step }) = next.take() {
-            let mut led = Led::default();
             match step {
                 Some(step) => self.run_step(&run, step, &mut led),
                 None => self.run_is_over(&run, &mut led),
             }
             // The first task that becomes ready runs here: a chain never changes threads.
-            for ready in ready(led) {
+            led.each_ready(|ready| {
                 if next.is_none() {
                     next = Some(ready);
                 } else {
                     scope.spawn(move |scope| self.run_from(ready, scope));
                 }
-            }
+            });
         }
     }
 
@@ -219,12 +220,12 @@ impl<'a> Runner<'a> {
         led: &mut Led<'a>,
     ) {
         let parked = flight.map(|key| self.flights.land(key)).unwrap_or_default();
-        let same = ended.clone().taken();
+        let same = if parked.is_empty() { None } else { Some(ended.clone().taken()) };
         self.end(run, index, ended);
         led.ended.push((run.clone(), index));
-        for Task { run, step } in parked {
-            if let Some(step) = step {
-                self.end(&run, step, same.clone());
+        for (task, same) in parked.into_iter().zip(std::iter::repeat(same).flatten()) {
+            if let Task { run, step: Some(step) } = task {
+                self.end(&run, step, same);
                 led.ended.push((run, step));
             }
         }
@@ -366,21 +367,21 @@ fn sources<'a>(run: &Arc<Run<'a>>) -> impl Iterator<Item = Task<'a>> {
     tasks.into_iter()
 }
 
-/// What can be done now.
-fn ready(led: Led<'_>) -> Vec<Task<'_>> {
-    let mut ready = Vec::new();
-    for (run, ended) in led.ended {
-        for &dependent in &run.plan.steps[ended].dependents {
-            if run.states[dependent].pending.fetch_sub(1, Ordering::AcqRel) == 1 {
-                ready.push(Task { run: run.clone(), step: Some(dependent) });
+impl<'a> Led<'a> {
+    /// What can be done now; forgets what led to it.
+    fn each_ready(&mut self, mut then: impl FnMut(Task<'a>)) {
+        for (run, ended) in self.ended.drain(..) {
+            for &dependent in &run.plan.steps[ended].dependents {
+                if run.states[dependent].pending.fetch_sub(1, Ordering::AcqRel) == 1 {
+                    then(Task { run: run.clone(), step: Some(dependent) });
+                }
+            }
+            if run.left.fetch_sub(1, Ordering::AcqRel) == 1 {
+                then(Task { run, step: None });
             }
         }
-        if run.left.fetch_sub(1, Ordering::AcqRel) == 1 {
-            ready.push(Task { run, step: None });
-        }
+        self.started.drain(..).for_each(|run| sources(&run).for_each(&mut then));
     }
-    led.started.iter().for_each(|run| ready.extend(sources(run)));
-    ready
 }
 
 /// What keeps a step from running.

@@ -126,6 +126,13 @@ impl<'a> Reader<'a> {
             message: "it has neither a value nor a type".to_owned(),
             remedy: "add value: 0.5, or type: \"curves\", say".to_owned(),
         })?;
+        if spec.wire == crate::WireType::of::<crate::Choice>() && spec.options.is_empty() {
+            return Err(Flaw {
+                at: self.offset(piece),
+                message: "a choice needs its options".to_owned(),
+                remedy: "add options: [(\"name\", \"what it does\")]".to_owned(),
+            });
+        }
         if let Some((at, literal)) = &value
             && let Some(message) = spec.refuses(literal)
         {

@@ -110,6 +110,14 @@ impl<'a> Reader<'a> {
                     ConnectError::NoSuchOutput { known, .. } => closest(output, known.iter().map(String::as_str)),
                     _ => None,
                 };
+                let body = self.graph.node(node).and_then(|node| node.body()?.graph());
+                let is_declared = body.is_some_and(|graph| graph.output(output).is_some());
+                if is_declared && matches!(error, ConnectError::NoSuchOutput { .. }) {
+                    let message =
+                        format!("\"{name}\" gives nothing at \"{output}\": what that comes from is not understood");
+                    self.refuse(link, message, "see to the graph within");
+                    return None;
+                }
                 let remedy = match suggestion {
                     Some(output) => format!("did you mean \"{name}.{output}\"?"),
                     None => "link another output".to_owned(),

@@ -249,6 +249,7 @@ impl File {
         pace(object.corners.len() / 2)?;
         let positions: Vec<DVec3> = vertices.iter().map(|&vertex| self.positions[vertex]).collect();
         let corners: Vec<u32> = object.corners.iter().map(|corner| used.places[corner.vertex]).collect();
+        pace(object.corners.len() * 3 / 4)?;
         let counts = polygons().map(|polygon| polygon.len());
         let failed = |source| ReadError::Mesh { name: object.name.clone(), source };
         let mut mesh = Mesh::from_corners(positions, corners, counts).map_err(failed)?.named(&object.name);
