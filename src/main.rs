@@ -1,6 +1,6 @@
 //! The headless command of Maquette. Exit codes: 0 done, 1 a node failed, a --fail-if limit was exceeded, what was
-//! compared differs or a wedge was stopped, 2 the graph or the arguments are wrong, 3 a result could not be written, or
-//! the program broke down.
+//! compared differs, a graph is of an earlier version or a wedge was stopped, 2 the graph or the arguments are wrong, 3 a
+//! result could not be written, or the program broke down.
 
 use std::process::ExitCode;
 
@@ -9,8 +9,9 @@ use maquette::commands::{self, Ended};
 
 /// Evaluates procedural modelling graphs: sketched curves in, models out.
 ///
-/// Exit codes: 0 done, 1 a node failed, a --fail-if limit was exceeded, what was compared differs or a wedge was
-/// stopped, 2 the graph or the arguments are wrong, 3 a result could not be written, or the program broke down.
+/// Exit codes: 0 done, 1 a node failed, a --fail-if limit was exceeded, what was compared differs, a graph is of
+/// an earlier version or a wedge was stopped, 2 the graph or the arguments are wrong, 3 a result could not be written, or
+/// the program broke down.
 #[derive(Parser)]
 #[command(version, about, long_about, max_term_width = 110)]
 struct Arguments {
@@ -23,6 +24,7 @@ enum Command {
     Run(commands::run::Arguments),
     Check(commands::check::Arguments),
     Fmt(commands::fmt::Arguments),
+    Migrate(commands::migrate::Arguments),
     Diff(commands::diff::Arguments),
     Verify(commands::verify::Arguments),
     Freeze(commands::freeze::Arguments),
@@ -40,6 +42,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => commands::run::run(arguments),
         Command::Check(arguments) => commands::check::check(arguments),
         Command::Fmt(arguments) => commands::fmt::fmt(arguments),
+        Command::Migrate(arguments) => commands::migrate::migrate(arguments),
         Command::Diff(arguments) => commands::diff::diff(arguments),
         Command::Verify(arguments) => commands::verify::verify(arguments),
         Command::Freeze(arguments) => commands::freeze::freeze(arguments),

@@ -113,7 +113,7 @@ fn a_part_is_found_from_the_graphs_folder_and_checked_with_its_name() {
     std::fs::remove_file(&part_path).unwrap();
     let (code, _, error) = maquette(&["run", str(&graph)]);
     let missing =
-        "g.ron:8:19: error: node \"line\": its body can't be had: the file parts/line.ron: there is no such file";
+        "g.ron:9:19: error: node \"line\": its body can't be had: the file parts/line.ron: there is no such file";
     assert!(code == 2 && error.contains(missing), "{error}");
     // What can't be loaded is not lost by being rewritten.
     let (code, out, error) = maquette(&["fmt", "--print", str(&graph)]);

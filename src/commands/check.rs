@@ -7,6 +7,7 @@ use maquette_graph::{Catalogue, Evaluator, OutcomeState, Parameter, Request, Uni
 
 use super::diff::spelled_literal;
 use super::graph_file::GraphFile;
+use super::project::ProjectArguments;
 use super::{Ended, console};
 
 /// Load graphs and say everything that is wrong with them, each with place and remedy.
@@ -15,6 +16,8 @@ pub struct Arguments {
     /// Evaluate every node as well, and say which ones fail; without it nothing is evaluated.
     #[arg(long)]
     evaluate: bool,
+    #[command(flatten)]
+    project: ProjectArguments,
     /// List the parameters of each graph: what they hold, their ranges, what they are for.
     #[arg(long)]
     parameters: bool,
@@ -43,7 +46,7 @@ pub fn check(arguments: &Arguments) -> Ended {
 
 /// Whether the graph is sound.
 fn check_one(catalogue: &Catalogue, path: &Path, arguments: &Arguments) -> bool {
-    let file = match GraphFile::open(catalogue, path) {
+    let file = match GraphFile::open(catalogue, path, &arguments.project) {
         Ok(file) => file,
         Err(messages) => {
             messages.iter().for_each(console::remark);
@@ -58,6 +61,7 @@ fn check_one(catalogue: &Catalogue, path: &Path, arguments: &Arguments) -> bool 
         match problem.severity {
             Severity::Error => errors += 1,
             Severity::Warning => warnings += 1,
+            Severity::Note => {}
         }
     }
     let all: Vec<_> = graph.nodes().map(|(id, _)| id).collect();
@@ -68,7 +72,7 @@ fn check_one(catalogue: &Catalogue, path: &Path, arguments: &Arguments) -> bool 
     said.iter().for_each(console::remark);
     errors += said.len();
     if arguments.evaluate {
-        let request = Request::nodes(&file.given(&all)).base(file.base()).examine();
+        let request = Request::nodes(&file.given(&all)).base(file.base()).project(&file.project).examine();
         let evaluation = Evaluator::default().evaluate(catalogue, graph, &request);
         for (id, outcome) in evaluation.outcomes() {
             match &outcome.state {

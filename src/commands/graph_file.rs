@@ -1,10 +1,14 @@
 //! A graph as it lies on disk.
 
 use std::collections::BTreeSet;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-use maquette_graph::file::{self, Includes, Loaded, Problem, Severity};
+use maquette_graph::file::{self, Includes, Loaded, Problem, Project, Severity};
 use maquette_graph::{Catalogue, Graph, Literal, NodeId, Source};
+
+use super::overrides;
+use super::project::ProjectArguments;
 
 /// A graph with the file it came from.
 pub(super) struct GraphFile {
@@ -14,6 +18,8 @@ pub(super) struct GraphFile {
     /// What stands in the file.
     pub(super) text: String,
     pub(super) loaded: Loaded,
+    /// The files that it may read.
+    pub(super) project: Project,
 }
 
 /// Why a graph could not be opened: what was said about it, for `--json`.
@@ -21,21 +27,27 @@ pub(super) type Refused = Vec<String>;
 
 impl GraphFile {
     /// Reads a graph; what is wrong with it is in its problems.
-    pub(super) fn open(catalogue: &Catalogue, path: &Path) -> Result<Self, Refused> {
-        Self::open_in(catalogue, path, None)
+    pub(super) fn open(catalogue: &Catalogue, path: &Path, project: &ProjectArguments) -> Result<Self, Refused> {
+        Self::open_in(catalogue, path, None, project)
     }
 
     /// As [`GraphFile::open`], with relative paths starting elsewhere than at its own folder.
-    pub(super) fn open_in(catalogue: &Catalogue, path: &Path, base: Option<&Path>) -> Result<Self, Refused> {
+    pub(super) fn open_in(
+        catalogue: &Catalogue,
+        path: &Path,
+        base: Option<&Path>,
+        project: &ProjectArguments,
+    ) -> Result<Self, Refused> {
         let name = path.display();
-        let bytes = std::fs::read(path).map_err(|error| {
+        let bytes = read_graph(path).map_err(|error| {
             let reason = match error.kind() {
                 std::io::ErrorKind::NotFound => "there is no such file: check the path".to_owned(),
                 _ => format!("it can't be read: {error}"),
             };
             vec![format!("{name}: error: {reason}")]
         })?;
-        Self::from_bytes(catalogue, path, bytes, base)
+        let project = project.of(base.unwrap_or(folder_of(path)));
+        Self::from_bytes(catalogue, path, bytes, base, project)
     }
 
     /// Reads a graph from the bytes of a file.
@@ -44,26 +56,45 @@ impl GraphFile {
         path: &Path,
         bytes: Vec<u8>,
         base: Option<&Path>,
+        project: Project,
     ) -> Result<Self, Refused> {
         let name = path.display();
         let folder = base.unwrap_or(folder_of(path));
-        let read = |file: &Path| read_included(&folder.join(file));
+        let read = |file: &Path| read_included(&project, &folder.join(file));
         let own = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let includes = Includes::new(&own, &read);
         let loaded =
             file::from_bytes_with(catalogue, &bytes, &includes).map_err(|error| vec![format!("{name}:{error}")])?;
         let text = String::from_utf8(bytes).map_err(|_| vec![format!("{name}: error: the file is not UTF-8 text")])?;
-        Ok(Self { path: path.to_owned(), folder: folder.to_owned(), text, loaded })
+        Ok(Self { path: path.to_owned(), folder: folder.to_owned(), text, loaded, project })
     }
 
     /// Reads a graph that is to be evaluated, with its warnings; refuses it where something is wrong.
-    pub(super) fn open_sound(catalogue: &Catalogue, path: &Path) -> Result<(Self, Vec<String>), Refused> {
-        let file = Self::open(catalogue, path)?;
+    pub(super) fn open_sound(
+        catalogue: &Catalogue,
+        path: &Path,
+        project: &ProjectArguments,
+    ) -> Result<(Self, Vec<String>), Refused> {
+        let file = Self::open(catalogue, path, project)?;
         let (errors, warnings): (Vec<_>, Vec<_>) =
             file.loaded.problems.iter().partition(|p| p.severity == Severity::Error);
         let errors: Vec<String> = errors.iter().map(|p| file.located(p)).collect();
         let warnings = warnings.iter().map(|p| file.located(p)).collect();
         if errors.is_empty() { Ok((file, warnings)) } else { Err(errors) }
+    }
+
+    /// Puts a value given by `--set` into the graph. A file that the user names, the user wants to be read.
+    pub(super) fn apply(&mut self, assignment: &str) -> Result<(), String> {
+        let literal = overrides::apply(&mut self.loaded.graph, assignment)?;
+        self.allow(&literal);
+        Ok(())
+    }
+
+    /// Lets the graph read the file that a value of the user names, if it names one.
+    pub(super) fn allow(&mut self, literal: &Literal) {
+        if let Literal::File(path) = literal {
+            self.project.allow(self.folder.join(path));
+        }
     }
 
     /// The problem with the file's name before it: that of an included file where that has it.
@@ -170,7 +201,8 @@ impl GraphFile {
         files
     }
 
-    /// Files that the graph names and that are not there, and files and sketches that it leaves empty.
+    /// Files that the graph names and that are not there or must not be read, and files and sketches that it leaves
+    /// empty.
     pub(super) fn missing_content(&self) -> Vec<String> {
         let mut missing = Vec::new();
         for (id, node) in self.loaded.graph.nodes() {
@@ -185,8 +217,13 @@ impl GraphFile {
                 };
                 let message = match literal {
                     Some(Literal::File(path)) if path.is_empty() => "no file is named; give a path".to_owned(),
-                    Some(Literal::File(path)) if !self.base().join(path).is_file() => {
-                        format!("the file {} does not exist", self.base().join(path).display())
+                    Some(Literal::File(path)) => {
+                        let path = self.base().join(path);
+                        match self.project.check(&path) {
+                            Err(outside) => outside.to_string(),
+                            Ok(()) if path.is_file() => continue,
+                            Ok(()) => format!("the file {} does not exist", path.display()),
+                        }
                     }
                     Some(Literal::Strokes(strokes)) if strokes.is_empty() => {
                         "there are no strokes; draw some, or remove the node".to_owned()
@@ -205,14 +242,22 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
+/// The bytes of a graph's file; of one that is too long, enough to refuse it.
+fn read_graph(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    std::fs::File::open(path)?.take(file::MOST_BYTES as u64 + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
 /// The bytes of a graph that another one includes, or in words for artists why there are none.
-fn read_included(path: &Path) -> Result<Vec<u8>, String> {
+fn read_included(project: &Project, path: &Path) -> Result<Vec<u8>, String> {
+    project.check(path).map_err(|outside| outside.to_string())?;
     // Asked first, because to open a pipe may take forever.
     match std::fs::metadata(path) {
         Ok(data) if !data.is_file() => return Err("it is not a file".to_owned()),
         _ => {}
     }
-    std::fs::read(path).map_err(|error| match error.kind() {
+    read_graph(path).map_err(|error| match error.kind() {
         std::io::ErrorKind::NotFound => {
             "there is no such file: put it there, or correct the path (it starts at the folder of the file that names it)"
                 .to_owned()

@@ -20,17 +20,18 @@ enum Target {
     Parameter(String, Vec<NodeId>),
 }
 
-/// Puts a value given on the command line into the graph.
+/// Puts a value given on the command line into the graph, and gives it as it was understood.
 ///
 /// Texts, choices and files are written bare, vectors and colours as numbers separated by commas; anything may also be
 /// written as in a graph file. A relative path starts at the current folder.
-pub(super) fn apply(graph: &mut Graph, assignment: &str) -> Result<(), String> {
+pub(super) fn apply(graph: &mut Graph, assignment: &str) -> Result<Literal, String> {
     let fail = |reason: String| format!("--set {assignment}: {reason}");
     let how = || "write it as NODE.PORT=VALUE, or PARAMETER=VALUE".to_owned();
     let (address, value) = assignment.split_once('=').ok_or_else(|| fail(how()))?;
     let place = Place::find(graph, address).map_err(fail)?;
     let literal = place.read(value).map_err(fail)?;
-    place.set(graph, literal).map_err(fail)
+    place.set(graph, literal.clone()).map_err(fail)?;
+    Ok(literal)
 }
 
 impl Place {
@@ -42,11 +43,12 @@ impl Place {
             format!("no node is named \"{name}\"{hint}")
         })?;
         let kind = graph.node(node).and_then(|n| n.kind().cloned());
-        let spec = kind.as_ref().and_then(|k| k.find_input(port)).ok_or_else(|| {
+        // A script may be as old as a file.
+        let spec = kind.as_ref().and_then(|k| k.current_input(port)).ok_or_else(|| {
             let known = kind.iter().flat_map(|k| k.inputs()).map(|i| i.name.as_str()).collect::<Vec<_>>().join(", ");
             format!("node \"{name}\" has no input \"{port}\"; it has {known}")
         })?;
-        Self::of(Target::Input(node, port.to_owned()), spec)
+        Self::of(Target::Input(node, spec.name.clone()), spec)
             .ok_or_else(|| format!("the input takes {} from a link; a value can't be given", spec.wire))
     }
 

@@ -116,7 +116,8 @@ impl<'a> Runner<'a> {
 
     /// The files that the graph is made of and names, whatever is wrong with it.
     pub(super) fn files(&self) -> Vec<PathBuf> {
-        let file = GraphFile::open(&self.catalogue, &self.arguments.evaluation.graph);
+        let file =
+            GraphFile::open(&self.catalogue, &self.arguments.evaluation.graph, &self.arguments.evaluation.project);
         file.map(|file| file.files()).unwrap_or_default()
     }
 

@@ -233,7 +233,7 @@ pub enum ConnectError {
         wanted: &'static str,
     },
     /// The link would close a cycle.
-    #[error("the link would close the cycle {}: a node can't depend on its own result", .0.join(" -> "))]
+    #[error("the link would close the cycle {}: a node can't depend on its own result", around(.0))]
     Cycle(
         /// Names of the nodes around the cycle; the first is repeated at the end.
         Vec<String>,
@@ -246,6 +246,19 @@ pub(crate) fn did_you_mean(suggestion: Option<&str>) -> String {
 
 fn list(names: &[String]) -> String {
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+}
+
+/// Most nodes of a cycle that a message names.
+const MOST_NAMED: usize = 12;
+
+/// The nodes around a cycle; of a long one the beginning and the end.
+fn around(names: &[String]) -> String {
+    if names.len() <= MOST_NAMED {
+        return names.join(" -> ");
+    }
+    let half = MOST_NAMED / 2;
+    let (first, last) = (names[..half].join(" -> "), names[names.len() - half..].join(" -> "));
+    format!("{first} -> ({} more) -> {last}", names.len() - 2 * half)
 }
 
 /// Whether a node, parameter or output may be named so.
@@ -271,7 +284,7 @@ pub struct Graph {
     pub(crate) parameters: Vec<Parameter>,
     pub(crate) outputs: Vec<GraphOutput>,
     names: HashMap<String, NodeId>,
-    topology: Topology,
+    pub(crate) topology: Topology,
     next: u32,
     revision: u64,
     identity: u64,
@@ -281,6 +294,8 @@ pub struct Graph {
     pub(crate) unknown_fields: Vec<(String, String)>,
     /// Layout entries of the file that belong to no node.
     pub(crate) unknown_layout: Vec<(String, String)>,
+    /// With which versions of kinds that the catalogue does not know the file was written.
+    pub(crate) unknown_kinds: BTreeMap<String, u32>,
     /// Parameters and outputs of the file that could not be understood: names and texts, kept as they were.
     pub(crate) unread_parameters: Vec<(String, String)>,
     pub(crate) unread_outputs: Vec<(String, String)>,
@@ -307,6 +322,7 @@ impl Clone for Graph {
             notes: self.notes.clone(),
             unknown_fields: self.unknown_fields.clone(),
             unknown_layout: self.unknown_layout.clone(),
+            unknown_kinds: self.unknown_kinds.clone(),
             unread_parameters: self.unread_parameters.clone(),
             unread_outputs: self.unread_outputs.clone(),
         }
@@ -328,6 +344,7 @@ impl Graph {
             notes: String::new(),
             unknown_fields: Vec::new(),
             unknown_layout: Vec::new(),
+            unknown_kinds: BTreeMap::new(),
             unread_parameters: Vec::new(),
             unread_outputs: Vec::new(),
         }
@@ -635,22 +652,6 @@ impl Graph {
     ) -> Result<(), ConnectError> {
         self.check_ports(catalogue, from, output, to, input)?;
         self.check_acyclic(from, to)
-    }
-
-    /// Whether a link would close a cycle.
-    pub(crate) fn check_acyclic(&self, from: NodeId, to: NodeId) -> Result<(), ConnectError> {
-        match self.topology.cycle_closed_by(from, to) {
-            None => Ok(()),
-            Some(path) => {
-                let names = path.iter().chain(path.first()).filter_map(|id| self.nodes.get(id));
-                Err(ConnectError::Cycle(names.map(|n| n.name.clone()).collect()))
-            }
-        }
-    }
-
-    /// For each of these links, whether it can't be part of a cycle if all of them are added.
-    pub(crate) fn harmless(&self, links: impl Iterator<Item = (NodeId, NodeId)> + Clone) -> Vec<bool> {
-        self.topology.harmless(links)
     }
 
     /// Whether the ports of a link exist and their types fit.

@@ -45,6 +45,7 @@ pub mod edit;
 mod evaluate;
 mod examination;
 pub mod file;
+mod former_names;
 pub mod freeze;
 mod graph;
 pub mod guide;
@@ -71,6 +72,7 @@ pub use evaluate::{
     OutcomeState, Request,
 };
 pub use examination::Examination;
+pub use former_names::InputHandle;
 pub use graph::{ConnectError, Graph, GraphError, Link, Node, NodeId, Source};
 pub use interface::{GraphOutput, InterfaceError, OutputSource};
 pub use literal::{Choice, Colour, FilePath, Literal, LiteralKind, Stroke, StrokePoint, Strokes, Vector};

@@ -6,6 +6,7 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use crate::examination::Examination;
+use crate::former_names::FormerNames;
 use crate::literal::{Choice, Colour, FilePath, Literal, Strokes, Vector};
 use crate::port::{InputSpec, OptionSpec, OutputSpec, Range, Unit};
 use crate::ports::{NodeError, Ports};
@@ -74,6 +75,7 @@ pub struct NodeKind {
     pub(crate) tables: Vec<TableSpec>,
     /// Indices of the inputs whose files it reads.
     file_inputs: Vec<usize>,
+    pub(crate) former: FormerNames,
     /// Which input a muted node passes on at an output, where it is not the first one of that type.
     pub(crate) passes: Vec<(usize, usize)>,
     /// Of a kind with a body: the hash of that body.
@@ -111,6 +113,7 @@ impl NodeKind {
             figures: Vec::new(),
             tables: Vec::new(),
             file_inputs: Vec::new(),
+            former: FormerNames::default(),
             passes: Vec::new(),
             content: None,
         }

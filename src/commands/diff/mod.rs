@@ -10,7 +10,7 @@ mod text;
 
 use std::path::{Path, PathBuf};
 
-use maquette_graph::file::Severity;
+use maquette_graph::file::{Project, Severity};
 use maquette_graph::{Catalogue, Evaluation, Evaluator, NodeId, OutcomeState, Request};
 use serde_json::json;
 
@@ -19,6 +19,7 @@ use self::geometry::OutputDifference;
 pub(super) use self::input::spelled_literal;
 use self::pairing::{Pairing, pair};
 use super::graph_file::GraphFile;
+use super::project::ProjectArguments;
 use super::{Ended, console};
 
 /// Say what differs between two graphs: nodes added, removed and renamed, links, values and strokes. The order within
@@ -43,6 +44,8 @@ pub struct Arguments {
     /// Relative paths within both graphs start at this folder, not at their own; for a copy that lies elsewhere.
     #[arg(long, value_name = "FOLDER")]
     base: Option<PathBuf>,
+    #[command(flatten)]
+    project: ProjectArguments,
     /// For git's diff.NAME.command: the arguments that git gives, PATH OLD-FILE OLD-HEX OLD-MODE NEW-FILE NEW-HEX
     /// NEW-MODE. Always exits with 0, because git takes all else for a breakdown.
     #[arg(long, num_args = 1..=9, value_name = "ARGUMENTS", allow_hyphen_values = true)]
@@ -141,7 +144,9 @@ fn compare(
     second: &Path,
     base: Option<&Path>,
 ) -> Result<Comparison, Vec<String>> {
-    let (a, b) = match (open(catalogue, first, base), open(catalogue, second, base)) {
+    // Reading is most of the work where graphs are large.
+    let read = |path: &Path| open(catalogue, path, base, &arguments.project);
+    let (a, b) = match rayon::join(|| read(first), || read(second)) {
         (Ok(a), Ok(b)) => (a, b),
         (a, b) => return Err([a.err(), b.err()].into_iter().flatten().flatten().collect()),
     };
@@ -152,11 +157,16 @@ fn compare(
 }
 
 /// Reads a graph. What does not exist yet or any more, which git spells /dev/null, is an empty one.
-fn open(catalogue: &Catalogue, path: &Path, base: Option<&Path>) -> Result<GraphFile, Vec<String>> {
+fn open(
+    catalogue: &Catalogue,
+    path: &Path,
+    base: Option<&Path>,
+    project: &ProjectArguments,
+) -> Result<GraphFile, Vec<String>> {
     if path == Path::new("/dev/null") || path == Path::new("nul") {
-        return GraphFile::from_bytes(catalogue, path, b"(version: 1, nodes: {})".to_vec(), base);
+        return GraphFile::from_bytes(catalogue, path, b"(version: 1, nodes: {})".to_vec(), base, Project::default());
     }
-    GraphFile::open_in(catalogue, path, base)
+    GraphFile::open_in(catalogue, path, base, project)
 }
 
 fn compare_results(
@@ -206,7 +216,7 @@ fn evaluate(catalogue: &Catalogue, evaluator: &mut Evaluator, file: &GraphFile) 
     if !wrong.is_empty() || !missing.is_empty() {
         return Err(wrong.into_iter().chain(missing).collect());
     }
-    let request = Request::nodes(&results).base(file.base());
+    let request = Request::nodes(&results).base(file.base()).project(&file.project);
     let evaluation = evaluator.evaluate(catalogue, &file.loaded.graph, &request);
     let failures: Vec<String> = evaluation
         .outcomes()

@@ -43,12 +43,15 @@ impl Plan {
     pub(super) fn new(arguments: &Arguments) -> Result<Self, Vec<String>> {
         let catalogue = maquette_nodes::catalogue().map_err(|error| vec![format!("error: {error}")])?;
         let types = RefCell::new(Vec::new());
-        let Opened { file, targets, mut warnings, .. } = open(&catalogue, &arguments.evaluation, |found| {
+        let Opened { mut file, targets, mut warnings, .. } = open(&catalogue, &arguments.evaluation, |found| {
             types.borrow_mut().extend_from_slice(found);
             Ok(())
         })?;
         let file_warnings = warnings.clone();
         let variants = read_variants(arguments, &file)?;
+        for value in variants.axes.iter().flat_map(|axis| &axis.values) {
+            file.allow(&value.literal);
+        }
         if variants.repeated > 0 {
             let (left, repeated) = (variants.len(), variants.repeated);
             warnings.push(format!("warning: {repeated} samples repeat others and are left out; {left} are left"));

@@ -16,6 +16,7 @@ use crate::evaluate::place::Place;
 use crate::evaluate::plan::{Found, Plan, Planner};
 use crate::evaluate::run::{Ended, Run, Runner};
 use crate::evaluate::{CancelToken, EventKind, Events};
+use crate::file::Project;
 use crate::graph::{Graph, NodeId};
 use crate::value::KeyHasherBuilder;
 
@@ -44,6 +45,7 @@ pub struct Request<'a> {
     events: &'a dyn Events,
     cancel: CancelToken,
     base: PathBuf,
+    project: Option<Project>,
     examine: bool,
 }
 
@@ -55,6 +57,7 @@ impl<'a> Request<'a> {
             events: &(),
             cancel: CancelToken::new(),
             base: PathBuf::new(),
+            project: None,
             examine: false,
         }
     }
@@ -81,6 +84,13 @@ impl<'a> Request<'a> {
     #[must_use]
     pub fn base(self, base: impl AsRef<Path>) -> Self {
         Self { base: base.as_ref().to_owned(), ..self }
+    }
+
+    /// The nodes may read the files of this project. Without one they may read what lies below [`Request::base`], which
+    /// is the current folder where none is given.
+    #[must_use]
+    pub fn project(self, project: &Project) -> Self {
+        Self { project: Some(project.clone()), ..self }
     }
 }
 
@@ -150,7 +160,7 @@ impl Evaluator {
     pub fn evaluate(&mut self, catalogue: &Catalogue, graph: &Graph, request: &Request<'_>) -> Evaluation {
         let begun = Instant::now();
         self.evaluations += 1;
-        self.files.begin();
+        self.files.begin(request.project.clone().unwrap_or_else(|| Project::within(&request.base)));
         self.sync(graph, request);
         let place = Place::of_root(graph);
         let disk = Disk { base: &request.base, folder: "", cache: &self.files };

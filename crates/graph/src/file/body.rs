@@ -6,9 +6,10 @@ use ron::value::RawValue;
 use serde::Deserialize;
 
 use crate::body::{Body, BodySource, Repeat, within};
+use crate::file::limit::{BODY_PORT, TOO_LARGE};
 use crate::file::read::{Read, Reader};
 use crate::file::syntax::in_words;
-use crate::file::tree::{FileTree, NodeTree, trimmed};
+use crate::file::tree::{FileTree, NodeTree, take_apart, trimmed};
 use crate::graph::{NodeId, Source};
 use crate::interface::InterfaceError;
 
@@ -50,6 +51,10 @@ impl<'a> Reader<'a> {
             // What kept the file from being read is said already.
             Some(body) if body.graph().is_none() => {}
             Some(body) => match body.kind(self.catalogue, &kind_name) {
+                // A file that many nodes include costs little, but the ports of each.
+                Ok(made) if !self.inclusion.meter.take(BODY_PORT * (made.inputs().len() + made.outputs().len())) => {
+                    said = Some(TOO_LARGE.to_owned());
+                }
                 Ok(made) => kind = Some(made),
                 Err(error) => said = Some(error.to_string()),
             },
@@ -91,12 +96,13 @@ impl<'a> Reader<'a> {
             };
             return self.made(at, node, Body::new(BodySource::File(path), graph, repeat));
         }
-        let tree: FileTree<'a> = match ron::from_str(piece) {
+        let tree: FileTree<'a> = match take_apart(piece, &self.inclusion.meter) {
             Ok(tree) => tree,
             Err(error) => {
                 let lines = crate::file::place::LineIndex::new(piece);
-                let within = lines.byte(piece, error.span.start.line, error.span.start.col);
-                let message = format!("the body can't be read: {}", in_words(&error.code));
+                let within = lines.byte(error.span.start.line, error.span.start.col);
+                let why = if self.inclusion.meter.is_exceeded() { TOO_LARGE.to_owned() } else { in_words(&error.code) };
+                let message = format!("the body can't be read: {why}");
                 let remedy = "write body: File(\"...\") or body: (nodes: { ... })";
                 self.error(at + within, Some(node), None, message, remedy);
                 return None;
@@ -108,9 +114,12 @@ impl<'a> Reader<'a> {
             self.error(at, Some(node), None, message, "");
             return None;
         }
-        let reader = Reader::new(self.inclusion, self.text, self.lines, &standing);
-        let Read { graph, mut problems, .. } = reader.read(&tree);
+        let mut reader = Reader::new(self.inclusion, self.text, self.lines, &standing);
+        // The body is of the same file, and so of the same time.
+        reader.kind_versions.clone_from(&self.kind_versions);
+        let Read { graph, mut problems, mut rewrites, .. } = reader.read(&tree);
         self.problems.append(&mut problems);
+        self.rewrites.append(&mut rewrites);
         self.made(at, node, Body::new(BodySource::Embedded, Some(std::sync::Arc::new(graph)), repeat))
     }
 

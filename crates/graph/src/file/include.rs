@@ -1,14 +1,15 @@
 //! Files within files: the graphs that nodes of a graph have as their bodies.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
 use crate::body::{DEEPEST, folder_of};
 use crate::catalogue::Catalogue;
+use crate::file::limit::{MOST_PROBLEM_BYTES, MOST_PROBLEMS, Meter, quoted_in_message};
 use crate::file::read::{Read, read_file, utf8};
-use crate::file::{FileError, Problem};
+use crate::file::{FileError, Problem, Severity};
 use crate::graph::Graph;
 
 /// How a loader gets the files that a graph includes. The engine reads no file of its own accord.
@@ -68,7 +69,7 @@ impl Standing {
         Self {
             file: self.file.clone(),
             folder: self.folder.clone(),
-            path: format!("{}{node}/", self.path),
+            path: format!("{}{}/", self.path, quoted_in_message(node)),
             chain: self.chain.clone(),
             depth: self.depth + 1,
         }
@@ -98,11 +99,57 @@ pub(super) struct Inclusion<'a> {
     /// `None` for a file that can't be read.
     files: RefCell<BTreeMap<String, Option<Arc<Graph>>>>,
     problems: RefCell<Vec<Problem>>,
+    /// What all files together ask for.
+    pub(super) meter: Meter,
+    /// How many problems there are, and the bytes that they take.
+    said: Cell<[usize; 2]>,
+    /// Errors and warnings that are not listed, because there are too many.
+    left_out: Cell<[usize; 2]>,
 }
 
 impl<'a> Inclusion<'a> {
     pub(super) fn new(catalogue: &'a Catalogue, includes: &'a Includes<'a>) -> Self {
-        Self { catalogue, includes, files: RefCell::default(), problems: RefCell::default() }
+        Self {
+            catalogue,
+            includes,
+            files: RefCell::default(),
+            problems: RefCell::default(),
+            meter: Meter::default(),
+            said: Cell::default(),
+            left_out: Cell::default(),
+        }
+    }
+
+    /// Whether one more problem may be listed; what may not is counted.
+    pub(super) fn has_room_for(&self, problem: &Problem) -> bool {
+        let Problem { file, node, port, message, remedy, .. } = problem;
+        let names = [file, node, port].map(|name| name.as_ref().map_or(0, String::len));
+        let [count, bytes] = self.said.get();
+        let bytes = bytes + size_of::<Problem>() + message.len() + remedy.len() + names.iter().sum::<usize>();
+        if count >= MOST_PROBLEMS || bytes > MOST_PROBLEM_BYTES {
+            let mut left_out = self.left_out.get();
+            left_out[usize::from(problem.severity != Severity::Error)] += 1;
+            self.left_out.set(left_out);
+            return false;
+        }
+        self.said.set([count + 1, bytes]);
+        true
+    }
+
+    /// Says how many problems are not listed.
+    pub(super) fn left_out(&self) -> Vec<Problem> {
+        let counts = [Severity::Error, Severity::Warning].into_iter().zip(self.left_out.get());
+        let said = counts.filter(|(_, count)| *count > 0).map(|(severity, count)| Problem {
+            severity,
+            file: None,
+            line: 1,
+            column: 1,
+            node: None,
+            port: None,
+            message: format!("{count} more of this kind are not listed"),
+            remedy: "mend what is listed first".to_owned(),
+        });
+        said.collect()
     }
 
     pub(super) fn read(&self, text: &str, standing: &Standing) -> Result<Read, FileError> {

@@ -3,10 +3,11 @@
 use serde::Deserialize;
 
 use crate::catalogue::closest;
+use crate::file::limit::TOO_LARGE;
 use crate::file::literal_text::{Spelled, parse};
 use crate::file::read::Reader;
 use crate::file::syntax::in_words;
-use crate::file::tree::{FieldsTree, FileTree, trimmed};
+use crate::file::tree::{FieldsTree, FileTree, take_fields_apart, trimmed};
 use crate::graph::Link;
 use crate::interface::{GraphOutput, OutputSource};
 use crate::literal::Literal;
@@ -42,10 +43,12 @@ impl<'a> Reader<'a> {
     }
 
     fn fields(&self, piece: &'a str, example: &str) -> Result<FieldsTree<'a>, Flaw> {
-        ron::from_str(piece).map_err(|error: ron::error::SpannedError| {
+        take_fields_apart(piece, &self.inclusion.meter).map_err(|error| {
             let lines = crate::file::place::LineIndex::new(piece);
-            let within = lines.byte(piece, error.span.start.line, error.span.start.col);
-            let (message, remedy) = (in_words(&error.code), format!("write {example}"));
+            let within = lines.byte(error.span.start.line, error.span.start.col);
+            let is_exceeded = self.inclusion.meter.is_exceeded();
+            let message = if is_exceeded { TOO_LARGE.to_owned() } else { in_words(&error.code) };
+            let remedy = format!("write {example}");
             Flaw { at: self.offset(piece) + within, message, remedy }
         })
     }

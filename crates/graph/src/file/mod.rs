@@ -40,25 +40,35 @@
 //! not written. Numbers, integers and booleans are bare, everything else names its type: `Link("node.output")`,
 //! `Parameter("..")`, `Text("..")`, `Choice("..")`, `Vector(x, y, z)`, `Colour(r, g, b, a)`, `File("..")`, `Strokes([..])`. What this
 //! version does not know (kinds, inputs, fields) or can't read is reported with its place and written back as it was.
+//! Older versions are read, and what kinds, ports and options were called before ([`migrate`]): with a note.
 //! Not kept are comments (use `notes` for the graph and `note` for a node), attributes, and all but the last of several
 //! values at one input or of several places of one node.
 
 mod body;
+mod disk;
 mod include;
 mod interface;
+mod limit;
 mod link;
 mod literal_text;
+mod migrate;
 mod place;
 mod problem;
+mod project;
 mod read;
+mod renamed;
 mod syntax;
 mod tree;
 mod write;
 
+pub use disk::{OpenError, SaveError, open, save, write_whole};
 pub use include::Includes;
+pub use limit::MOST_BYTES;
 pub use literal_text::{LiteralError, parse_literal};
 pub(crate) use literal_text::{Spelled, parse};
+pub use migrate::{Migrated, migrate};
 pub use problem::{FileError, Problem, Severity};
+pub use project::{Outside, Project};
 pub use read::{Loaded, from_bytes, from_bytes_with, from_text, from_text_with};
 pub use write::to_text;
 pub(crate) use write::{number, quoted, selection_to_text};

@@ -11,6 +11,8 @@ pub enum Severity {
     Error,
     /// It can, but something deserves a look.
     Warning,
+    /// It can; the file is an old one, and was read as what it means today. `maquette migrate` rewrites it.
+    Note,
 }
 
 impl fmt::Display for Severity {
@@ -18,6 +20,7 @@ impl fmt::Display for Severity {
         f.write_str(match self {
             Self::Error => "error",
             Self::Warning => "warning",
+            Self::Note => "note",
         })
     }
 }
@@ -66,6 +69,10 @@ impl Problem {
             FileError::NotUtf8 { line, column } => {
                 (*line, *column, "the file is not UTF-8 text".to_owned(), "save it as UTF-8".to_owned())
             }
+            FileError::TooLarge { line, column, what } => {
+                let remedy = "divide it into several, or keep long curves and meshes in files of their own";
+                (*line, *column, format!("the graph is too large: {what}"), remedy.to_owned())
+            }
             FileError::Syntax { line, column, message, remedy } => (*line, *column, message.clone(), remedy.clone()),
         };
         let (file, severity) = (Some(file.to_owned()), Severity::Error);
@@ -83,6 +90,19 @@ pub enum FileError {
         line: usize,
         /// Column of the first bad byte, counted from 1.
         column: usize,
+    },
+    /// It would take more memory than a graph may.
+    #[error(
+        "{line}:{column}: error: the graph is too large: {what}; divide it into several, or keep long curves and meshes \
+         in files of their own"
+    )]
+    TooLarge {
+        /// Line at which it becomes too large, counted from 1.
+        line: usize,
+        /// Column, counted from 1.
+        column: usize,
+        /// What is too much.
+        what: String,
     },
     /// Not a graph in RON.
     #[error("{line}:{column}: error: {}; {remedy}", one_line(.message))]

@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 
 use crate::body::{Body, BodySource, Repeat};
 use crate::file::FORMAT_VERSION;
-use crate::file::tree::FileTree;
+use crate::file::limit::Meter;
+use crate::file::tree::take_apart;
 use crate::graph::{Graph, Node, NodeId, Source};
 use crate::interface::OutputSource;
 use crate::literal::{Literal, Stroke, StrokePoint};
@@ -19,9 +20,23 @@ pub fn to_text(graph: &Graph) -> String {
     let version = graph.unknown_fields.iter().find(|(name, _)| name == "version");
     let version = version.map_or_else(|| FORMAT_VERSION.to_string(), |(_, raw)| raw.clone());
     line(&mut out, 1, &format!("version: {version},"));
+    write_kind_versions(&mut out, graph);
     write_graph(&mut out, 1, graph, false);
     out.push_str(")\n");
     out
+}
+
+/// The versions of kinds whose defaults were other ones before: without them, the file would mean something else when
+/// defaults change again.
+fn write_kind_versions(out: &mut String, graph: &Graph) {
+    let versions = graph.kind_versions();
+    if !versions.is_empty() {
+        line(out, 1, "kinds: {");
+        for (kind, version) in versions {
+            line(out, 2, &format!("{}: {version},", quoted(&kind)));
+        }
+        line(out, 1, "},");
+    }
 }
 
 /// The fields of a graph, but for the version of its file.
@@ -62,6 +77,7 @@ pub(crate) fn selection_to_text(graph: &Graph, nodes: &BTreeSet<NodeId>) -> Stri
     let nodes: Vec<_> = nodes.iter().filter_map(|id| graph.node(*id)).collect();
     let mut out = String::from("(\n");
     line(&mut out, 1, &format!("version: {FORMAT_VERSION},"));
+    write_kind_versions(&mut out, graph);
     let is_used = |name: &str| {
         let mut sources = nodes.iter().flat_map(|node| node.sources());
         sources.any(|(_, source)| matches!(source, Source::Parameter(used) if used == name))
@@ -255,6 +271,14 @@ fn write_input(out: &mut String, depth: usize, graph: &Graph, name: &str, source
     line(out, depth, &format!("{}: {value},", quoted(name)));
 }
 
+/// A literal in one piece, strokes on one line.
+pub(super) fn spelled_literal(literal: &Literal) -> String {
+    let mut out = String::new();
+    write_literal(&mut out, 0, "", literal);
+    let lines: Vec<_> = out.lines().map(str::trim).collect();
+    lines.concat().trim_start_matches(": ").trim_end_matches(',').to_owned()
+}
+
 fn write_literal(out: &mut String, depth: usize, name: &str, literal: &Literal) {
     let value = match literal {
         Literal::Number(value) => number(*value),
@@ -326,7 +350,7 @@ fn identifier(name: &str) -> String {
         && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     // Which other characters may stand plainly is for RON to say.
     let reads_back =
-        || ron::from_str::<FileTree<'_>>(&format!("({name}: 0)")).is_ok_and(|t| t.unknown.iter().any(|f| f.0 == name));
+        || take_apart(&format!("({name}: 0)"), &Meter::default()).is_ok_and(|t| t.unknown.iter().any(|f| f.0 == name));
     if ascii || reads_back() { name.to_owned() } else { format!("r#{name}") }
 }
 
