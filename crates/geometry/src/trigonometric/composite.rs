@@ -91,6 +91,11 @@ impl Layout {
         }
     }
 
+    /// Estimated condition number of the basis of a segment in the angle it counts.
+    pub(super) fn condition(&self, segment: usize, harmonics: usize, local: bool) -> f64 {
+        condition(if local { PI } else { self.span(segment) }, harmonics)
+    }
+
     /// The samples of each segment, as index and angle within its range. Samples on a joint belong to both segments.
     pub(super) fn assign(&self, angles: &[f64]) -> Vec<Vec<(usize, f64)>> {
         let mut samples = vec![Vec::new(); self.count()];

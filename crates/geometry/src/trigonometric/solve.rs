@@ -14,6 +14,9 @@ use nalgebra::DMatrix;
 /// Harmonics factored at first: the greater of the two with which the search begins.
 const PROBED: usize = 10;
 
+/// Condition number, as estimated, beyond which no more harmonics are tried: coefficients then are so large that half of
+/// the digits go.
+const WORST_CONDITION: f64 = 1e8;
 /// Share of its error before one harmonic more, above which that harmonic hardly helped a segment.
 const STALLED: f64 = 0.7;
 
@@ -114,10 +117,13 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Most harmonics the search tries in a segment: beyond a quarter of the samples a series may swing between them.
+    /// Most harmonics the search tries in a segment: beyond a quarter of the samples a series may swing between them,
+    /// and where the basis is too ill-conditioned, joints are met only to the rounding of huge coefficients.
     fn most(&self, segment: usize, most: usize) -> usize {
         let fewest = self.layout.fewest_harmonics(segment);
-        most.min((self.samples[segment].len().saturating_sub(1)) / 4).max(fewest)
+        let most = most.min((self.samples[segment].len().saturating_sub(1)) / 4);
+        let usable = |j: &usize| self.layout.condition(segment, *j, self.is_local(segment, *j)) <= WORST_CONDITION;
+        (fewest..=most).rev().find(usable).unwrap_or(fewest)
     }
 
     fn check(&self, goal: &Goal) -> Result<(), FitError> {

@@ -306,7 +306,9 @@ fn open_strokes_are_split_too() {
             let options = FitOptions { split: joints(continuity), solution, ..FitOptions::default() };
             let fitted = fit(&stroke, &options).unwrap();
             assert_smooth(&fitted.section, continuity);
-            assert!(fitted.report.met, "{:?}", fitted.report);
+            // In turn, what the first segment's free end happens to curve like binds all that follows.
+            let bound = solution == Solution::InTurn && continuity == Continuity::C2;
+            assert_eq!(fitted.report.met, !bound, "{:?}", fitted.report);
         }
     }
     let split = Split::Automatic { most: 4, corner_angle: 1.0 };
