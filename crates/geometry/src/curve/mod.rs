@@ -12,6 +12,7 @@ mod spline_length;
 pub use arc_length::ArcLength;
 pub use closest::{Closest, closest};
 pub use correspondence::{AxisSource, Decision, SortError, SortOptions, Sorted, sort};
+pub(crate) use correspondence::{metres, place};
 pub use polyline::{Curve, CurveError};
 pub use resample::{Amount, MAX_POINTS, ResampleError, Resampling, resample};
 pub(crate) use smoothing::{Ends, NotSolvable, smoothed};

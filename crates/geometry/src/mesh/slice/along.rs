@@ -1,0 +1,337 @@
+//! Sections along a bone, and in planes that are given.
+
+use glam::DVec3;
+
+use super::around::{Found, around_bone};
+use super::crossing::crossings;
+use super::plane::{Frame, Plane};
+use super::section::{Method, NoSection, Section, SectionOptions, Sliced, from_loop, from_points};
+use super::stations::{along_bone, with_fronts};
+use super::warning::SliceWarning;
+use super::{cut, rays};
+use crate::curve::{Curve, CurveError, MAX_POINTS, ResampleError, metres, place};
+use crate::mesh::{Mesh, MeshRays};
+
+/// Most sections that are made in one go.
+pub const MAX_SECTIONS: usize = 4096;
+
+/// How far beyond its ends a bone is followed, in lengths of the bone.
+const REACH: f64 = 10.0;
+
+/// Where sections stand along a bone, as shares of its length: 0 is its first point, 1 its last. Beyond its ends a bone
+/// goes on straight; -10 to 11 are allowed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Positions {
+    /// This many, evenly from the first share to the last; a single one in the middle.
+    Count {
+        /// How many, 1 to [`MAX_SECTIONS`].
+        count: usize,
+        /// First and last share.
+        extent: [f64; 2],
+    },
+    /// These, in growing order.
+    At(Vec<f64>),
+}
+
+impl Positions {
+    /// `count` sections from end to end.
+    pub fn count(count: usize) -> Self {
+        Self::Count { count, extent: [0.0, 1.0] }
+    }
+
+    /// The shares, one a section.
+    ///
+    /// # Errors
+    /// [`SliceError`] where there are none or too many, or they do not grow or are out of range.
+    pub fn fractions(&self) -> Result<Vec<f64>, SliceError> {
+        let found = match self {
+            Self::Count { count, .. } => *count,
+            Self::At(fractions) => fractions.len(),
+        };
+        if !(1..=MAX_SECTIONS).contains(&found) {
+            return Err(SliceError::SectionCount { found });
+        }
+        let fractions = match self {
+            Self::Count { count: 1, extent: [from, to] } if from <= to => vec![0.5 * (from + to)],
+            Self::Count { count, extent: [from, to] } => {
+                let last = (count - 1) as f64;
+                (0..*count).map(|k| k as f64 / last).map(|t| from * (1.0 - t) + to * t).collect()
+            }
+            Self::At(fractions) => fractions.clone(),
+        };
+        if let Some(&fraction) = fractions.iter().find(|f| !(-REACH..=1.0 + REACH).contains(*f)) {
+            return Err(SliceError::OutOfReach { fraction });
+        }
+        match fractions.windows(2).position(|pair| pair[0] >= pair[1]) {
+            Some(before) => Err(SliceError::NotGrowing { section: before + 1, fraction: fractions[before + 1] }),
+            None => Ok(fractions),
+        }
+    }
+}
+
+/// How sections are taken along a bone.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AlongOptions {
+    /// Where they stand.
+    pub positions: Positions,
+    /// Stretch around a joint over which the planes turn from one bone's direction to the next, as a share of the whole
+    /// length, 0 to 1. At 0 they turn at once. Where a body of radius r bends by an angle of a, sections do not cross
+    /// where the stretch is longer than r a.
+    pub turning: f64,
+    /// How they are made.
+    pub section: SectionOptions,
+}
+
+impl Default for AlongOptions {
+    /// 12 sections from end to end that turn over 0.3 of the length.
+    fn default() -> Self {
+        Self { positions: Positions::count(12), turning: 0.3, section: SectionOptions::default() }
+    }
+}
+
+/// Why a mesh has no sections. Sections are counted from 0, lengths are metres.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SliceError {
+    /// A mesh without polygons.
+    #[error("the mesh has no polygons, and so no sections")]
+    NoPolygons,
+    /// A bone that is a closed curve.
+    #[error("the bone \"{bone}\" is a closed curve: draw it open, from one joint to the next")]
+    ClosedBone {
+        /// Name of the bone.
+        bone: String,
+    },
+    /// A bone whose length is not a usable number.
+    #[error("the bone \"{bone}\" is too small or too large to measure: scale it with its mesh")]
+    Unmeasurable {
+        /// Name of the bone.
+        bone: String,
+    },
+    /// No section, or more than [`MAX_SECTIONS`].
+    #[error("{found} sections asked for: ask for 1 to 4096")]
+    SectionCount {
+        /// Sections asked for.
+        found: usize,
+    },
+    /// A share of the bone's length that is out of range.
+    #[error("a section at {fraction} of the bone: give numbers from -10 to 11, where 0 is its start and 1 its end")]
+    OutOfReach {
+        /// The share.
+        fraction: f64,
+    },
+    /// Shares that do not grow.
+    #[error("section {section}, at {fraction} of the bone, does not lie behind the one before: give growing numbers")]
+    NotGrowing {
+        /// The section.
+        section: usize,
+        /// Its share.
+        fraction: f64,
+    },
+    /// A stretch of turning that is out of range.
+    #[error("a turning of {turning} is not a share of the bone's length: give a number from 0 to 1")]
+    Turning {
+        /// The stretch.
+        turning: f64,
+    },
+    /// A number of points that makes no section.
+    #[error("{points} points a section asked for: ask for 3 to 65 536")]
+    PointCount {
+        /// Points asked for.
+        points: usize,
+    },
+    /// A front that is no direction.
+    #[error("the front {front} is no direction: give finite numbers that are not all zero")]
+    Front {
+        /// The front.
+        front: DVec3,
+    },
+    /// The loop around the bone does not close.
+    #[error(
+        "section {section}: the outline around {} does not close, for the mesh has a hole: it ends at {} and at {}, \
+         {} apart; close the hole, move the section, or use rays",
+        place(*at), place(ends[0]), place(ends[1]), metres(ends[0].distance(ends[1]))
+    )]
+    NotClosed {
+        /// The section.
+        section: usize,
+        /// The bone's point in it.
+        at: DVec3,
+        /// The ends that should meet.
+        ends: [DVec3; 2],
+    },
+    /// Some rays hit nothing.
+    #[error(
+        "section {section}: {} of {rays} rays from {} hit nothing, the first one {:.0} degrees counter-clockwise from \
+         the front: close the hole, move the section, or move the bone into the body",
+        missed.len(), place(*at), 360.0 * missed.first().map_or(0.0, |k| *k as f64) / *rays as f64
+    )]
+    RaysMissed {
+        /// The section.
+        section: usize,
+        /// The bone's point in it.
+        at: DVec3,
+        /// Rays that were cast.
+        rays: usize,
+        /// Those that hit nothing, counted from 0 at the front.
+        missed: Vec<usize>,
+    },
+    /// Several rays hit one point.
+    #[error(
+        "section {section}: several rays from {} hit one point: move the bone away from the surface, into the body",
+        place(*at)
+    )]
+    RaysMeet {
+        /// The section.
+        section: usize,
+        /// The bone's point in it.
+        at: DVec3,
+    },
+    /// No plane meets the mesh.
+    #[error("none of the {planes} planes meets the mesh: move the bone into the body, and mind the units (metres)")]
+    NothingCut {
+        /// Planes tried.
+        planes: usize,
+    },
+    /// A loop that makes no curve.
+    #[error("section {section}: {source}")]
+    Curve {
+        /// The section.
+        section: usize,
+        /// Why.
+        source: CurveError,
+    },
+    /// A loop that can't be given its points.
+    #[error("section {section}: {source}")]
+    Resample {
+        /// The section.
+        section: usize,
+        /// Why.
+        source: ResampleError,
+    },
+}
+
+/// Sections of a mesh along a bone, which is an open polyline in metres inside of the body.
+///
+/// Planes stand across the bone; at joints they turn smoothly from one bone's direction to the next, as
+/// [`AlongOptions::turning`] says (the normal is the mean direction of the bone over that stretch). In each plane the
+/// loop around the bone is kept (the outermost of several), run counter-clockwise about the bone's direction, begun at
+/// the front and resampled; see [`plane`](super::plane()) for what happens at vertices in the plane and
+/// [`Section`] for what is measured. Fronts are carried along the bone by parallel transport, so that equal points of
+/// neighbouring sections correspond; a reversed bone gives the same loops, run the other way.
+///
+/// # Errors
+/// [`SliceError`] where an option is out of range, an outline does not close or a ray misses, or no plane meets the mesh.
+pub fn along(mesh: &Mesh, bone: &Curve, options: &AlongOptions) -> Result<Sliced, SliceError> {
+    let name = || bone.name().to_owned();
+    if bone.is_closed() {
+        return Err(SliceError::ClosedBone { bone: name() });
+    }
+    if !(0.0..=1.0).contains(&options.turning) {
+        return Err(SliceError::Turning { turning: options.turning });
+    }
+    check(mesh, &options.section)?;
+    let fractions = options.positions.fractions()?;
+    let frames = along_bone(bone, &fractions, options.turning, options.section.front)
+        .ok_or_else(|| SliceError::Unmeasurable { bone: name() })?;
+    in_frames(mesh, &frames, &options.section)
+}
+
+/// Sections of a mesh in planes that are given, in order along the body; the bone passes through their origins in the
+/// direction of their normals. Otherwise as [`along`].
+///
+/// # Errors
+/// As [`along`].
+pub fn through(mesh: &Mesh, planes: &[Plane], options: &SectionOptions) -> Result<Sliced, SliceError> {
+    check(mesh, options)?;
+    if !(1..=MAX_SECTIONS).contains(&planes.len()) {
+        return Err(SliceError::SectionCount { found: planes.len() });
+    }
+    in_frames(mesh, &with_fronts(planes, options.front, |_, _| Vec::new()), options)
+}
+
+fn check(mesh: &Mesh, options: &SectionOptions) -> Result<(), SliceError> {
+    if !options.front.is_finite() || options.front == DVec3::ZERO {
+        return Err(SliceError::Front { front: options.front });
+    }
+    if !(3..=MAX_POINTS).contains(&options.points) {
+        return Err(SliceError::PointCount { points: options.points });
+    }
+    if mesh.polygon_count() == 0 { Err(SliceError::NoPolygons) } else { Ok(()) }
+}
+
+fn in_frames(mesh: &Mesh, frames: &[Frame], options: &SectionOptions) -> Result<Sliced, SliceError> {
+    let mut warnings = Vec::new();
+    let mut sections = Vec::with_capacity(frames.len());
+    match options.method {
+        Method::Loop => {
+            for (index, frame) in frames.iter().enumerate() {
+                sections.extend(by_loop(mesh, index, frame, options.points, &mut warnings)?);
+            }
+        }
+        Method::Rays(hit) => {
+            let tree = MeshRays::new(mesh).map_err(|_| SliceError::NoPolygons)?;
+            for (index, frame) in frames.iter().enumerate() {
+                let hits = rays::cast(&tree, frame, options.points, hit);
+                sections.extend(by_rays(index, frame, &hits, &mut warnings)?);
+            }
+        }
+    }
+    if sections.is_empty() {
+        return Err(SliceError::NothingCut { planes: frames.len() });
+    }
+    warnings.extend(crossings(&sections));
+    Ok(Sliced { sections, warnings })
+}
+
+fn by_loop(
+    mesh: &Mesh,
+    section: usize,
+    frame: &Frame,
+    points: usize,
+    warnings: &mut Vec<SliceWarning>,
+) -> Result<Option<Section>, SliceError> {
+    let at = frame.plane.origin();
+    let loops = cut::plane(mesh, &frame.plane);
+    let (contour, others) = match around_bone(&loops, frame) {
+        Found::Around { contour, others, wider_open } => {
+            if wider_open {
+                warnings.push(SliceWarning::WithinOpen { section, at });
+            }
+            (contour, others)
+        }
+        Found::Beside { contour, others, distance } => {
+            warnings.push(SliceWarning::Beside { section, at, distance });
+            (contour, others)
+        }
+        Found::Open(ends) => return Err(SliceError::NotClosed { section, at, ends }),
+        Found::Nothing => {
+            warnings.push(SliceWarning::Missed { section, at });
+            return Ok(None);
+        }
+    };
+    match from_loop(section, frame, contour, points, others) {
+        Ok(made) => Ok(Some(made)),
+        Err(NoSection::Curve(source)) => Err(SliceError::Curve { section, source }),
+        Err(NoSection::Resample(source)) => Err(SliceError::Resample { section, source }),
+    }
+}
+
+fn by_rays(
+    section: usize,
+    frame: &Frame,
+    hits: &[Option<DVec3>],
+    warnings: &mut Vec<SliceWarning>,
+) -> Result<Option<Section>, SliceError> {
+    let at = frame.plane.origin();
+    let missed: Vec<usize> = (0..hits.len()).filter(|ray| hits[*ray].is_none()).collect();
+    if missed.len() == hits.len() {
+        warnings.push(SliceWarning::Missed { section, at });
+        return Ok(None);
+    }
+    if !missed.is_empty() {
+        return Err(SliceError::RaysMissed { section, at, rays: hits.len(), missed });
+    }
+    let points = hits.iter().copied().flatten().collect();
+    let made = from_points(section, frame, points).map_err(|source| SliceError::Curve { section, source })?;
+    if made.curve.points().len() == hits.len() { Ok(Some(made)) } else { Err(SliceError::RaysMeet { section, at }) }
+}
