@@ -21,6 +21,3 @@ pub use cut::plane;
 pub use plane::{NoPlane, Plane};
 pub use section::{Hit, Method, Others, Section, SectionOptions, Sliced};
 pub use warning::SliceWarning;
-
-#[cfg(test)]
-mod tests;
