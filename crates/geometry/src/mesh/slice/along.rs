@@ -51,8 +51,13 @@ impl Positions {
         if !(1..=MAX_SECTIONS).contains(&found) {
             return Err(SliceError::SectionCount { found });
         }
+        if let Self::Count { extent: [from, to], .. } = self
+            && (from.is_nan() || to.is_nan() || from > to)
+        {
+            return Err(SliceError::Extent { from: *from, to: *to });
+        }
         let fractions = match self {
-            Self::Count { count: 1, extent: [from, to] } if from <= to => vec![0.5 * (from + to)],
+            Self::Count { count: 1, extent: [from, to] } => vec![0.5 * (from + to)],
             Self::Count { count, extent: [from, to] } => {
                 let last = (count - 1) as f64;
                 (0..*count).map(|k| k as f64 / last).map(|t| from * (1.0 - t) + to * t).collect()
@@ -75,8 +80,8 @@ pub struct AlongOptions {
     /// Where they stand.
     pub positions: Positions,
     /// Stretch around a joint over which the planes turn from one bone's direction to the next, as a share of the whole
-    /// length, 0 to 1. At 0 they turn at once. Where a body of radius r bends by an angle of a, sections do not cross
-    /// where the stretch is longer than r a.
+    /// length, 0 to 1. At 0 they turn at once. Where the bone bends by an angle a in one joint, sections do not cross
+    /// within r of it if the stretch is longer than 2 r tan(a/2) / cos(a/2); other joints on it shorten the reach.
     pub turning: f64,
     /// How they are made.
     pub section: SectionOptions,
@@ -112,6 +117,14 @@ pub enum SliceError {
     SectionCount {
         /// Sections asked for.
         found: usize,
+    },
+    /// A stretch of the bone that runs backwards.
+    #[error("sections from {from} to {to} of the bone run backwards: give the smaller share first")]
+    Extent {
+        /// Share of the first section.
+        from: f64,
+        /// Share of the last one.
+        to: f64,
     },
     /// A share of the bone's length that is out of range.
     #[error("a section at {fraction} of the bone: give numbers from -10 to 11, where 0 is its start and 1 its end")]
