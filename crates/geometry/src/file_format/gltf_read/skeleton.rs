@@ -28,6 +28,9 @@ pub struct Skeleton {
 /// Why joints make no bone.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BoneError {
+    /// No joint named.
+    #[error("a bone needs a joint to begin at: name one")]
+    NoJoint,
     /// A name that no joint has.
     #[error("there is no joint \"{name}\"; there are {}", known.join(", "))]
     Unknown {
@@ -45,7 +48,7 @@ pub enum BoneError {
         found: usize,
     },
     /// A joint without a child, and no other end given.
-    #[error("joint \"{joint}\" has no child to run to: begin at a joint above it")]
+    #[error("joint \"{joint}\" has no child to run to: begin at a joint above it, or name one to run to")]
     NoChild {
         /// The joint.
         joint: String,
@@ -57,14 +60,6 @@ pub enum BoneError {
         joint: String,
         /// Its children.
         children: Vec<String>,
-    },
-    /// Two joints of which none is above the other.
-    #[error("no chain of joints runs from \"{from}\" to \"{to}\": take two of which one is above the other")]
-    NoChain {
-        /// Where the bone is to begin.
-        from: String,
-        /// Where it is to end.
-        to: String,
     },
     /// Joints that all stand in one place.
     #[error(transparent)]
@@ -90,33 +85,38 @@ impl Skeleton {
         }
     }
 
-    /// The bone that runs from one joint to another through all joints between them, up or down the tree; to the only
-    /// child where no other end is given. It is called `from - to`.
+    /// The bone through joints in the order given, called by the first and the last of them. A single joint's bone runs
+    /// to its only child. Where one of two joints is above the other the bone also passes through all between them, and
+    /// otherwise straight from one to the other: some files have all their joints side by side.
     ///
     /// # Errors
-    /// [`BoneError`] where a name is not that of one joint, no chain runs between them, the child is missing or not the
-    /// only one, or all joints stand in one place.
-    pub fn bone(&self, from: &str, to: Option<&str>) -> Result<Curve, BoneError> {
-        let first = self.find(from)?;
-        let last = match to {
-            Some(to) => self.find(to)?,
-            None => self.only_child(first)?,
-        };
-        let up = |low: usize, high: usize| {
-            let chain: Vec<usize> = self.upwards(low).collect();
-            let end = chain.iter().position(|joint| *joint == high)?;
-            Some(chain[..=end].to_vec())
-        };
-        let chain = up(last, first).map(|chain| chain.into_iter().rev().collect()).or_else(|| up(first, last));
-        let to = self.joints[last].name.as_str();
-        let chain: Vec<usize> = chain.ok_or_else(|| BoneError::NoChain { from: from.to_owned(), to: to.to_owned() })?;
+    /// [`BoneError`] where no joint is named, a name is not that of one joint, the child is missing or not the only one,
+    /// or all joints stand in one place.
+    pub fn bone(&self, names: &[&str]) -> Result<Curve, BoneError> {
+        let mut wanted = names.iter().map(|name| self.find(name)).collect::<Result<Vec<usize>, _>>()?;
+        let Some(&first) = wanted.first() else { return Err(BoneError::NoJoint) };
+        if wanted.len() == 1 {
+            wanted.push(self.only_child(first)?);
+        }
+        let mut chain = vec![first];
+        for pair in wanted.windows(2) {
+            let between = self.chain(pair[1], pair[0]).map(|mut up| {
+                up.reverse();
+                up
+            });
+            chain.extend(between.or_else(|| self.chain(pair[0], pair[1])).unwrap_or_else(|| pair.to_vec()));
+        }
+        let name = |joint: usize| self.joints[joint].name.as_str();
+        let name = format!("{} - {}", name(first), name(wanted[wanted.len() - 1]));
         let points = chain.into_iter().map(|joint| self.joints[joint].position).collect();
-        Ok(Curve::new(format!("{from} - {to}"), points, false)?)
+        Ok(Curve::new(name, points, false)?)
     }
 
-    /// A joint and all above it.
-    fn upwards(&self, joint: usize) -> impl Iterator<Item = usize> {
-        std::iter::successors(Some(joint), |joint| self.joints[*joint].parent)
+    /// The joints from one up to another that is above it.
+    fn chain(&self, low: usize, high: usize) -> Option<Vec<usize>> {
+        let up: Vec<usize> = std::iter::successors(Some(low), |joint| self.joints[*joint].parent).collect();
+        let end = up.iter().position(|joint| *joint == high)?;
+        Some(up[..=end].to_vec())
     }
 
     fn only_child(&self, joint: usize) -> Result<usize, BoneError> {
@@ -278,34 +278,43 @@ mod tests {
     #[test]
     fn bones_run_through_all_joints_between() {
         let skeleton = open(&leg()).unwrap();
-        let leg = skeleton.bone("hip", Some("node 4")).unwrap();
+        let leg = skeleton.bone(&["hip", "node 4"]).unwrap();
         assert_eq!((leg.name(), leg.points().len()), ("hip - node 4", 3));
         assert!(leg.end().distance(DVec3::new(0.1, 1.1, 0.0)) < 1e-6);
-        assert_eq!(skeleton.bone("hip", None).unwrap().points(), &leg.points()[..2]);
-        let up = skeleton.bone("node 4", Some("hip")).unwrap();
+        assert_eq!(skeleton.bone(&["hip", "knee", "node 4"]).unwrap(), leg);
+        assert_eq!(skeleton.bone(&["hip"]).unwrap().points(), &leg.points()[..2]);
+        let up = skeleton.bone(&["node 4", "hip"]).unwrap();
         assert_eq!(up.points(), leg.reversed().points());
+    }
+
+    #[test]
+    fn joints_side_by_side_are_joined_straight() {
+        let mut document = leg();
+        document["nodes"][5]["name"] = "inner toe".into();
+        let across = open(&document).unwrap().bone(&["toe", "inner toe"]).unwrap();
+        assert_eq!(across.points().len(), 2);
+        assert!((across.start().distance(across.end()) - 0.2).abs() < 1e-6);
     }
 
     #[test]
     fn what_makes_no_bone_is_said() {
         let skeleton = open(&leg()).unwrap();
-        let refusal = |from, to| skeleton.bone(from, to).unwrap_err().to_string();
+        let refusal = |names: &[&str]| skeleton.bone(names).unwrap_err().to_string();
         assert_eq!(
-            refusal("hips", None),
+            refusal(&["hips"]),
             "there is no joint \"hips\"; there are \"hip\", \"knee\", \"node 4\", \"toe\", \"toe\""
         );
-        assert_eq!(refusal("hip", Some("toe")), "2 joints are called \"toe\": give them names of their own");
+        assert_eq!(refusal(&["hip", "toe"]), "2 joints are called \"toe\": give them names of their own");
         assert_eq!(
-            refusal("node 4", None),
+            refusal(&["node 4"]),
             "joint \"node 4\" has several children: say which one of \"toe\", \"toe\" the bone runs to"
         );
+        assert_eq!(refusal(&[]), "a bone needs a joint to begin at: name one");
+        assert!(refusal(&["hip", "hip"]).contains("1 distinct point"));
         let mut document = leg();
         document["nodes"][5]["name"] = "inner toe".into();
-        let skeleton = open(&document).unwrap();
-        let refusal = |from, to| skeleton.bone(from, to).unwrap_err().to_string();
-        assert_eq!(refusal("toe", None), "joint \"toe\" has no child to run to: begin at a joint above it");
-        assert!(refusal("toe", Some("inner toe")).starts_with("no chain of joints runs from \"toe\" to \"inner toe\""));
-        assert!(refusal("hip", Some("hip")).contains("1 distinct point"));
+        let message = open(&document).unwrap().bone(&["toe"]).unwrap_err().to_string();
+        assert_eq!(message, "joint \"toe\" has no child to run to: begin at a joint above it, or name one to run to");
     }
 
     #[test]

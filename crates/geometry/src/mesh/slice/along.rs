@@ -1,5 +1,7 @@
 //! Sections along a bone, and in planes that are given.
 
+use std::f64::consts::PI;
+
 use glam::DVec3;
 
 use super::around::{Found, around_bone};
@@ -7,7 +9,7 @@ use super::crossing::crossings;
 use super::plane::{Frame, Plane};
 use super::section::{Method, NoSection, Section, SectionOptions, Sliced, from_loop, from_points};
 use super::stations::{along_bone, with_fronts};
-use super::warning::SliceWarning;
+use super::warning::{Concern, SliceWarning, warn};
 use super::{cut, rays};
 use crate::curve::{Curve, CurveError, MAX_POINTS, ResampleError, metres, place};
 use crate::mesh::{Mesh, MeshRays};
@@ -160,7 +162,7 @@ pub enum SliceError {
     },
     /// The loop around the bone does not close.
     #[error(
-        "section {section}: the outline around {} does not close, for the mesh has a hole: it ends at {} and at {}, \
+        "section {section}: the outline around {} does not close, for the mesh is open there: it ends at {} and at {}, \
          {} apart; close the hole, move the section, or use rays",
         place(*at), place(ends[0]), place(ends[1]), metres(ends[0].distance(ends[1]))
     )]
@@ -222,6 +224,10 @@ pub enum SliceError {
         source: ResampleError,
     },
 }
+
+/// Offset of the bone in units of the section's radius from which a warning is due. On a human body the bones of the
+/// limbs, the spine and the head stay below 0.55; sections that cut both thighs, or arm and chest, are above 0.75.
+const OFF_CENTRE: f64 = 0.7;
 
 /// Sections of a mesh along a bone, which is an open polyline in metres inside of the body.
 ///
@@ -305,25 +311,30 @@ fn by_loop(
 ) -> Result<Option<Section>, SliceError> {
     let at = frame.plane.origin();
     let loops = cut::plane(mesh, &frame.plane);
-    let (contour, others) = match around_bone(&loops, frame) {
+    let (contour, others, around) = match around_bone(&loops, frame) {
         Found::Around { contour, others, wider_open } => {
             if wider_open {
-                warnings.push(SliceWarning::WithinOpen { section, at });
+                warn(warnings, section, at, Concern::WithinOpen);
             }
-            (contour, others)
+            (contour, others, true)
         }
         Found::Beside { contour, others, distance } => {
-            warnings.push(SliceWarning::Beside { section, at, distance });
-            (contour, others)
+            warn(warnings, section, at, Concern::Beside { distance });
+            (contour, others, false)
         }
         Found::Open(ends) => return Err(SliceError::NotClosed { section, at, ends }),
         Found::Nothing => {
-            warnings.push(SliceWarning::Missed { section, at });
+            warn(warnings, section, at, Concern::Missed);
             return Ok(None);
         }
     };
     match from_loop(section, frame, contour, points, others) {
-        Ok(made) => Ok(Some(made)),
+        Ok(made) => {
+            if around {
+                warn_off_centre(&made, warnings);
+            }
+            Ok(Some(made))
+        }
         Err(NoSection::Curve(source)) => Err(SliceError::Curve { section, source }),
         Err(NoSection::Resample(source)) => Err(SliceError::Resample { section, source }),
     }
@@ -338,7 +349,7 @@ fn by_rays(
     let at = frame.plane.origin();
     let missed: Vec<usize> = (0..hits.len()).filter(|ray| hits[*ray].is_none()).collect();
     if missed.len() == hits.len() {
-        warnings.push(SliceWarning::Missed { section, at });
+        warn(warnings, section, at, Concern::Missed);
         return Ok(None);
     }
     if !missed.is_empty() {
@@ -346,5 +357,16 @@ fn by_rays(
     }
     let points = hits.iter().copied().flatten().collect();
     let made = from_points(section, frame, points).map_err(|source| SliceError::Curve { section, source })?;
-    if made.curve.points().len() == hits.len() { Ok(Some(made)) } else { Err(SliceError::RaysMeet { section, at }) }
+    if made.curve.points().len() < hits.len() {
+        return Err(SliceError::RaysMeet { section, at });
+    }
+    warn_off_centre(&made, warnings);
+    Ok(Some(made))
+}
+
+fn warn_off_centre(section: &Section, warnings: &mut Vec<SliceWarning>) {
+    if section.offset > OFF_CENTRE * (section.area / PI).sqrt() {
+        let what = Concern::OffCentre { offset: section.offset };
+        warn(warnings, section.index, section.plane.origin(), what);
+    }
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::plane::Plane;
 use super::section::Section;
-use super::warning::SliceWarning;
+use super::warning::{Concern, SliceWarning};
 
 /// Sections share less than this of their size where they only touch.
 const TOUCH: f64 = 1e-9;
@@ -27,10 +27,11 @@ pub(super) fn crossings(sections: &[Section]) -> Vec<SliceWarning> {
             }
         }
     }
-    let warning = |(first, last, at): (usize, usize, DVec3)| SliceWarning::Cross {
+    let warning = |(first, last, at): (usize, usize, DVec3)| SliceWarning {
         first: sections[first].index,
         last: sections[last].index,
         at,
+        what: Concern::Cross,
     };
     runs.into_iter().map(warning).collect()
 }

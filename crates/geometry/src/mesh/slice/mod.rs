@@ -20,4 +20,4 @@ pub use chain::Loop;
 pub use cut::plane;
 pub use plane::{NoPlane, Plane};
 pub use section::{Hit, Method, Others, Section, SectionOptions, Sliced};
-pub use warning::SliceWarning;
+pub use warning::{Concern, SliceWarning};

@@ -87,7 +87,7 @@ pub struct Section {
 pub struct Sliced {
     /// The sections; at least one. A plane that does not meet the mesh has none, and a warning.
     pub sections: Vec<Section>,
-    /// What should be looked at, in the order of the sections; planes that cross come last.
+    /// What should be looked at, in the order of the first section concerned; sections that cross come last.
     pub warnings: Vec<SliceWarning>,
 }
 
