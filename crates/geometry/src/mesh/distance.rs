@@ -31,7 +31,7 @@ pub struct MeshDistance {
 }
 
 impl MeshDistance {
-    /// Sorts the [`triangles`] of a mesh, its quads split along the shorter diagonal.
+    /// Sorts the [`triangles`](super::triangles) of a mesh, its quads split along the shorter diagonal.
     ///
     /// # Errors
     /// [`NoPolygons`] where the mesh is empty.
