@@ -51,15 +51,17 @@ pub fn plane(mesh: &Mesh, plane: &Plane) -> Vec<Loop> {
             if height.abs() <= tolerance { 0.0 } else { height }
         })
         .collect();
+    // Nearly all polygons are on one side, which one byte a vertex tells fastest.
+    let above: Vec<bool> = heights.iter().map(|height| *height >= 0.0).collect();
     let mut segments = Vec::new();
     for (polygon, corners) in mesh.polygons().enumerate() {
-        match sides_across(corners, &heights) {
+        match sides_across(corners, &above) {
             Across::None => {}
             Across::Once { down, up } => push(mesh, &heights, down, up, &mut segments),
             Across::Often => {
                 for triangle in polygon_triangles(mesh, polygon) {
                     let corners = triangle.map(|corner| mesh.corners()[corner]);
-                    if let Across::Once { down, up } = sides_across(&corners, &heights) {
+                    if let Across::Once { down, up } = sides_across(&corners, &above) {
                         push(mesh, &heights, down, up, &mut segments);
                     }
                 }
@@ -76,9 +78,12 @@ enum Across {
     Often,
 }
 
-fn sides_across(corners: &[u32], heights: &[f64]) -> Across {
-    let above = |vertex: u32| heights[vertex as usize] >= 0.0;
+fn sides_across(corners: &[u32], above: &[bool]) -> Across {
+    let above = |vertex: u32| above[vertex as usize];
     let Some(&last) = corners.last() else { return Across::None };
+    if corners.iter().all(|vertex| above(*vertex) == above(last)) {
+        return Across::None;
+    }
     let (mut from, mut was_above) = (last, above(last));
     let (mut down, mut up) = (None, None);
     for &to in corners {
