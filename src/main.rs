@@ -24,6 +24,7 @@ enum Command {
     Fmt(commands::fmt::Arguments),
     Diff(commands::diff::Arguments),
     Verify(commands::verify::Arguments),
+    Freeze(commands::freeze::Arguments),
     Nodes(commands::nodes::Arguments),
     Render(commands::render::Arguments),
 }
@@ -39,6 +40,7 @@ fn main() -> ExitCode {
         Command::Fmt(arguments) => commands::fmt::fmt(arguments),
         Command::Diff(arguments) => commands::diff::diff(arguments),
         Command::Verify(arguments) => commands::verify::verify(arguments),
+        Command::Freeze(arguments) => commands::freeze::freeze(arguments),
         Command::Nodes(arguments) => commands::nodes::nodes(arguments),
         Command::Render(arguments) => commands::render::render(arguments),
     });

@@ -43,6 +43,8 @@ pub(super) struct Evaluated {
     pub(super) failures: Vec<String>,
     /// What deserves a look, in the file or in a node's result.
     pub(super) warnings: Vec<String>,
+    /// Those of them that are about the file.
+    pub(super) file_warnings: Vec<String>,
 }
 
 /// A graph that is ready to be evaluated.
@@ -52,6 +54,8 @@ pub(super) struct Opened {
     pub(super) targets: Vec<NodeId>,
     /// What deserves a look in the file.
     warnings: Vec<String>,
+    /// Whether to measure as well what is measured on request only.
+    pub(super) examine: bool,
 }
 
 /// Of which nodes the values are kept for a closer look.
@@ -93,7 +97,7 @@ pub(super) fn open(
         .flat_map(|k| k.outputs().iter().map(|o| o.wire).collect::<Vec<_>>())
         .collect();
     suits(&types)?;
-    Ok(Opened { file, targets, warnings })
+    Ok(Opened { file, targets, warnings, examine: false })
 }
 
 /// Evaluates; what fails in a node is in [`Evaluated::failures`], what is wrong with graph or arguments is an error.
@@ -119,11 +123,13 @@ impl Opened {
         keep: Keep,
         cancel: &CancelToken,
     ) -> Evaluated {
-        let Self { file, targets, mut warnings } = self;
+        let Self { file, targets, mut warnings, examine } = self;
+        let file_warnings = warnings.clone();
         let graph = &file.loaded.graph;
         let progress = Progress::new(!quiet);
         let asked = if keep == Keep::Everything { graph.upstream(&targets) } else { targets.clone() };
         let request = Request::nodes(&asked).events(&progress).base(file.base()).cancel(cancel);
+        let request = if examine { request.examine() } else { request };
         let evaluation = evaluator.evaluate(catalogue, graph, &request);
         progress.finish();
         let mut failures = Vec::new();
@@ -149,7 +155,7 @@ impl Opened {
         if !quiet {
             warnings.iter().for_each(console::remark);
         }
-        Evaluated { file, targets, evaluation, failures, warnings }
+        Evaluated { file, targets, evaluation, failures, warnings, file_warnings }
     }
 }
 

@@ -56,6 +56,7 @@ impl Events for Progress {
             EventKind::Progress(fraction) => self.change(|running| {
                 running.insert(event.node, format!("{} {:.0} %", event.name, fraction * 100.0));
             }),
+            EventKind::Examined(_) => {}
             EventKind::Hit
             | EventKind::Finished(_)
             | EventKind::Failed(_)

@@ -7,7 +7,8 @@ use std::f64::consts::{PI, TAU};
 use glam::{DQuat, DVec3, EulerRot};
 use maquette_geometry::curve::{ArcLength, Curve};
 use maquette_geometry::mesh::slice::{
-    AlongOptions, Concern, Hit, Method, Others, Plane, Positions, SectionOptions, SliceError, Sliced, along, through,
+    AlongOptions, Concern, Hit, Method, Others, Plane, Positions, SectionOptions, SliceError, Sliced, along,
+    along_while, through,
 };
 use maquette_geometry::mesh::{Mesh, join};
 use proptest::prelude::*;
@@ -356,6 +357,21 @@ fn options_out_of_range_are_refused() {
     assert_eq!(along(&Mesh::default(), &upright(), &options(3, 32)), Err(SliceError::NoPolygons));
     let none = through(&tube(8, 2), &[], &SectionOptions::default());
     assert_eq!(none, Err(SliceError::SectionCount { found: 0 }));
+}
+
+#[test]
+fn it_tells_how_far_it_is_and_stops_when_told_to() {
+    let told = std::cell::RefCell::new(Vec::new());
+    let tell = |share: f64| {
+        told.borrow_mut().push(share);
+        told.borrow().len() < 6
+    };
+    // Four sections, and one look at crossings for each.
+    let stopped = along_while(&tube(8, 2), &upright(), &options(4, 16), &tell);
+    assert_eq!(stopped, Err(SliceError::Stopped));
+    assert_eq!(*told.borrow(), [0.0, 0.25, 0.5, 0.75, 1.0, 1.0]);
+    let stopped = along_while(&tube(8, 2), &upright(), &by_rays(4, 16, Hit::First), &|share| share < 0.5);
+    assert_eq!(stopped, Err(SliceError::Stopped));
 }
 
 #[test]

@@ -38,8 +38,8 @@ pub(super) struct Feet {
     pub(super) offsets: Vec<f64>,
     /// Arc length of the first foot.
     pub(super) origin: f64,
-    /// Largest distance of a rail's end from the curve, metres.
-    pub(super) gap: f64,
+    /// Distance of each rail's end from the curve, metres.
+    pub(super) gaps: Vec<f64>,
 }
 
 impl Feet {
@@ -53,13 +53,13 @@ impl Feet {
     ) -> Result<Self, GenerateError> {
         let mut points = Vec::with_capacity(rails.len());
         let mut arcs = Vec::with_capacity(rails.len());
-        let mut gap = 0.0_f64;
+        let mut gaps = Vec::with_capacity(rails.len());
         for (index, rail) in rails.iter().enumerate() {
             let foot = closest(curve, side.of(rail));
             if foot.distance.is_nan() || foot.distance > options.snap {
                 return Err(too_far(index, rail, curve, other, side, foot.distance, options.snap));
             }
-            gap = gap.max(foot.distance);
+            gaps.push(foot.distance);
             points.push(foot.point);
             arcs.push(foot.arc_length);
         }
@@ -68,7 +68,7 @@ impl Feet {
         let mut offsets: Vec<f64> = arcs.iter().map(|arc| (arc - origin).rem_euclid(length)).collect();
         check_order(&offsets, length, side, curve)?;
         offsets.push(length);
-        Ok(Self { points, offsets, origin, gap })
+        Ok(Self { points, offsets, origin, gaps })
     }
 }
 

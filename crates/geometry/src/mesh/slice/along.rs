@@ -6,12 +6,13 @@ use glam::DVec3;
 
 use super::around::{Found, around_bone};
 use super::crossing::crossings;
+use super::error::SliceError;
 use super::plane::{Frame, Plane};
 use super::section::{Method, NoSection, Section, SectionOptions, Sliced, from_loop, from_points};
 use super::stations::{along_bone, with_fronts};
 use super::warning::{Concern, SliceWarning, warn};
 use super::{cut, rays};
-use crate::curve::{Curve, CurveError, MAX_POINTS, ResampleError, metres, place};
+use crate::curve::{Curve, MAX_POINTS};
 use crate::mesh::{Mesh, MeshRays};
 
 /// Most sections that are made in one go.
@@ -96,135 +97,6 @@ impl Default for AlongOptions {
     }
 }
 
-/// Why a mesh has no sections. Sections are counted from 0, lengths are metres.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SliceError {
-    /// A mesh without polygons.
-    #[error("the mesh has no polygons, and so no sections")]
-    NoPolygons,
-    /// A bone that is a closed curve.
-    #[error("the bone \"{bone}\" is a closed curve: draw it open, from one joint to the next")]
-    ClosedBone {
-        /// Name of the bone.
-        bone: String,
-    },
-    /// A bone whose length is not a usable number.
-    #[error("the bone \"{bone}\" is too small or too large to measure: scale it with its mesh")]
-    Unmeasurable {
-        /// Name of the bone.
-        bone: String,
-    },
-    /// No section, or more than [`MAX_SECTIONS`].
-    #[error("{found} sections asked for: ask for 1 to 4096")]
-    SectionCount {
-        /// Sections asked for.
-        found: usize,
-    },
-    /// A stretch of the bone that runs backwards.
-    #[error("sections from {from} to {to} of the bone run backwards: give the smaller share first")]
-    Extent {
-        /// Share of the first section.
-        from: f64,
-        /// Share of the last one.
-        to: f64,
-    },
-    /// A share of the bone's length that is out of range.
-    #[error("a section at {fraction} of the bone: give numbers from -10 to 11, where 0 is its start and 1 its end")]
-    OutOfReach {
-        /// The share.
-        fraction: f64,
-    },
-    /// Shares that do not grow.
-    #[error("section {section}, at {fraction} of the bone, does not lie behind the one before: give growing numbers")]
-    NotGrowing {
-        /// The section.
-        section: usize,
-        /// Its share.
-        fraction: f64,
-    },
-    /// A stretch of turning that is out of range.
-    #[error("a turning of {turning} is not a share of the bone's length: give a number from 0 to 1")]
-    Turning {
-        /// The stretch.
-        turning: f64,
-    },
-    /// A number of points that makes no section.
-    #[error("{points} points a section asked for: ask for 3 to 65 536")]
-    PointCount {
-        /// Points asked for.
-        points: usize,
-    },
-    /// A front that is no direction.
-    #[error("the front {front} is no direction: give finite numbers that are not all zero")]
-    Front {
-        /// The front.
-        front: DVec3,
-    },
-    /// The loop around the bone does not close.
-    #[error(
-        "section {section}: the outline around {} does not close, for the mesh is open there: it ends at {} and at {}, \
-         {} apart; close the hole, move the section, or use rays",
-        place(*at), place(ends[0]), place(ends[1]), metres(ends[0].distance(ends[1]))
-    )]
-    NotClosed {
-        /// The section.
-        section: usize,
-        /// The bone's point in it.
-        at: DVec3,
-        /// The ends that should meet.
-        ends: [DVec3; 2],
-    },
-    /// Some rays hit nothing.
-    #[error(
-        "section {section}: {} of {rays} rays from {} hit nothing, the first one {:.0} degrees counter-clockwise from \
-         the front: close the hole, move the section, or move the bone into the body",
-        missed.len(), place(*at), 360.0 * missed.first().map_or(0.0, |k| *k as f64) / *rays as f64
-    )]
-    RaysMissed {
-        /// The section.
-        section: usize,
-        /// The bone's point in it.
-        at: DVec3,
-        /// Rays that were cast.
-        rays: usize,
-        /// Those that hit nothing, counted from 0 at the front.
-        missed: Vec<usize>,
-    },
-    /// Several rays hit one point.
-    #[error(
-        "section {section}: several rays from {} hit one point: move the bone away from the surface, into the body",
-        place(*at)
-    )]
-    RaysMeet {
-        /// The section.
-        section: usize,
-        /// The bone's point in it.
-        at: DVec3,
-    },
-    /// No plane meets the mesh.
-    #[error("none of the {planes} planes meets the mesh: move the bone into the body, and mind the units (metres)")]
-    NothingCut {
-        /// Planes tried.
-        planes: usize,
-    },
-    /// A loop that makes no curve.
-    #[error("section {section}: {source}")]
-    Curve {
-        /// The section.
-        section: usize,
-        /// Why.
-        source: CurveError,
-    },
-    /// A loop that can't be given its points.
-    #[error("section {section}: {source}")]
-    Resample {
-        /// The section.
-        section: usize,
-        /// Why.
-        source: ResampleError,
-    },
-}
-
 /// Offset of the bone in units of the section's radius from which a warning is due. On a human body the bones of the
 /// limbs, the spine and the head stay below 0.55; sections that cut both thighs, or arm and chest, are above 0.75.
 const OFF_CENTRE: f64 = 0.7;
@@ -241,6 +113,19 @@ const OFF_CENTRE: f64 = 0.7;
 /// # Errors
 /// [`SliceError`] where an option is out of range, an outline does not close or a ray misses, or no plane meets the mesh.
 pub fn along(mesh: &Mesh, bone: &Curve, options: &AlongOptions) -> Result<Sliced, SliceError> {
+    along_while(mesh, bone, options, &|_| true)
+}
+
+/// The same, telling `progress` before each section what share is done, 0 to 1.
+///
+/// # Errors
+/// As [`along`], and [`SliceError::Stopped`] where `progress` answers `false`.
+pub fn along_while(
+    mesh: &Mesh,
+    bone: &Curve,
+    options: &AlongOptions,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<Sliced, SliceError> {
     let name = || bone.name().to_owned();
     if bone.is_closed() {
         return Err(SliceError::ClosedBone { bone: name() });
@@ -252,7 +137,7 @@ pub fn along(mesh: &Mesh, bone: &Curve, options: &AlongOptions) -> Result<Sliced
     let fractions = options.positions.fractions()?;
     let frames = along_bone(bone, &fractions, options.turning, options.section.front)
         .ok_or_else(|| SliceError::Unmeasurable { bone: name() })?;
-    in_frames(mesh, &frames, &options.section)
+    in_frames(mesh, &frames, &options.section, progress)
 }
 
 /// Sections of a mesh in planes that are given, in order along the body; the bone passes through their origins in the
@@ -261,11 +146,24 @@ pub fn along(mesh: &Mesh, bone: &Curve, options: &AlongOptions) -> Result<Sliced
 /// # Errors
 /// As [`along`].
 pub fn through(mesh: &Mesh, planes: &[Plane], options: &SectionOptions) -> Result<Sliced, SliceError> {
+    through_while(mesh, planes, options, &|_| true)
+}
+
+/// The same, telling `progress` before each section what share is done, 0 to 1.
+///
+/// # Errors
+/// As [`through`], and [`SliceError::Stopped`] where `progress` answers `false`.
+pub fn through_while(
+    mesh: &Mesh,
+    planes: &[Plane],
+    options: &SectionOptions,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<Sliced, SliceError> {
     check(mesh, options)?;
     if !(1..=MAX_SECTIONS).contains(&planes.len()) {
         return Err(SliceError::SectionCount { found: planes.len() });
     }
-    in_frames(mesh, &with_fronts(planes, options.front, |_, _| Vec::new()), options)
+    in_frames(mesh, &with_fronts(planes, options.front, |_, _| Vec::new()), options, progress)
 }
 
 fn check(mesh: &Mesh, options: &SectionOptions) -> Result<(), SliceError> {
@@ -278,18 +176,27 @@ fn check(mesh: &Mesh, options: &SectionOptions) -> Result<(), SliceError> {
     if mesh.polygon_count() == 0 { Err(SliceError::NoPolygons) } else { Ok(()) }
 }
 
-fn in_frames(mesh: &Mesh, frames: &[Frame], options: &SectionOptions) -> Result<Sliced, SliceError> {
+fn in_frames(
+    mesh: &Mesh,
+    frames: &[Frame],
+    options: &SectionOptions,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<Sliced, SliceError> {
+    let told = |share: f64| if progress(share) { Ok(()) } else { Err(SliceError::Stopped) };
+    let begun = |index: usize| told(index as f64 / frames.len() as f64);
     let mut warnings = Vec::new();
     let mut sections = Vec::with_capacity(frames.len());
     match options.method {
         Method::Loop => {
             for (index, frame) in frames.iter().enumerate() {
+                begun(index)?;
                 sections.extend(by_loop(mesh, index, frame, options.points, &mut warnings)?);
             }
         }
         Method::Rays(hit) => {
             let tree = MeshRays::new(mesh).map_err(|_| SliceError::NoPolygons)?;
             for (index, frame) in frames.iter().enumerate() {
+                begun(index)?;
                 let hits = rays::cast(&tree, frame, options.points, hit);
                 sections.extend(by_rays(index, frame, &hits, &mut warnings)?);
             }
@@ -298,7 +205,7 @@ fn in_frames(mesh: &Mesh, frames: &[Frame], options: &SectionOptions) -> Result<
     if sections.is_empty() {
         return Err(SliceError::NothingCut { planes: frames.len() });
     }
-    warnings.extend(crossings(&sections));
+    warnings.extend(crossings(&sections, &|| told(1.0))?);
     Ok(Sliced { sections, warnings })
 }
 

@@ -11,11 +11,14 @@ const TOUCH: f64 = 1e-9;
 
 /// One warning for each run of sections in which each crosses another. O(n^2) in the sections, nearly all of them parted
 /// by the balls around them.
-pub(super) fn crossings(sections: &[Section]) -> Vec<SliceWarning> {
+///
+/// `go_on` is asked once a section; its error is returned.
+pub(super) fn crossings<E>(sections: &[Section], go_on: &dyn Fn() -> Result<(), E>) -> Result<Vec<SliceWarning>, E> {
     let balls: Vec<(DVec3, f64)> = sections.iter().map(ball).collect();
     // First and last section of each run, and where two of them meet.
     let mut runs: Vec<(usize, usize, DVec3)> = Vec::new();
     for i in 0..sections.len() {
+        go_on()?;
         for j in i + 1..sections.len() {
             if balls[i].0.distance(balls[j].0) > balls[i].1 + balls[j].1 {
                 continue;
@@ -33,7 +36,7 @@ pub(super) fn crossings(sections: &[Section]) -> Vec<SliceWarning> {
         at,
         what: Concern::Cross,
     };
-    runs.into_iter().map(warning).collect()
+    Ok(runs.into_iter().map(warning).collect())
 }
 
 fn ball(section: &Section) -> (DVec3, f64) {

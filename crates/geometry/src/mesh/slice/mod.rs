@@ -9,15 +9,17 @@ mod around;
 mod chain;
 mod crossing;
 mod cut;
+mod error;
 mod plane;
 mod rays;
 mod section;
 mod stations;
 mod warning;
 
-pub use along::{AlongOptions, MAX_SECTIONS, Positions, SliceError, along, through};
+pub use along::{AlongOptions, MAX_SECTIONS, Positions, along, along_while, through, through_while};
 pub use chain::Loop;
 pub use cut::plane;
+pub use error::SliceError;
 pub use plane::{NoPlane, Plane};
 pub use section::{Hit, Method, Others, Section, SectionOptions, Sliced};
 pub use warning::{Concern, SliceWarning};
