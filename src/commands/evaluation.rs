@@ -53,7 +53,7 @@ pub(super) struct Opened {
     /// Its results that were asked for.
     pub(super) targets: Vec<NodeId>,
     /// What deserves a look in the file.
-    warnings: Vec<String>,
+    pub(super) warnings: Vec<String>,
     /// Whether to measure as well what is measured on request only.
     pub(super) examine: bool,
 }
@@ -132,31 +132,38 @@ impl Opened {
         let request = if examine { request.examine() } else { request };
         let evaluation = evaluator.evaluate(catalogue, graph, &request);
         progress.finish();
-        let mut failures = Vec::new();
-        for (id, outcome) in evaluation.outcomes() {
-            match &outcome.state {
-                OutcomeState::Failed(failure) => {
-                    failures.push(file.about(Severity::Error, id, failure.port.as_deref(), &failure.message));
-                }
-                OutcomeState::Waiting(on) if targets.contains(&id) => {
-                    failures.push(file.about(
-                        Severity::Error,
-                        id,
-                        None,
-                        &format!("not made, because \"{}\" failed", on.join("\", \"")),
-                    ));
-                }
-                OutcomeState::Done { report, .. } => {
-                    warnings.extend(report.warnings.iter().map(|w| file.about(Severity::Warning, id, None, w)));
-                }
-                _ => {}
-            }
-        }
+        let (failures, of_nodes) = messages(&file, &targets, &evaluation);
+        warnings.extend(of_nodes);
         if !quiet {
             warnings.iter().for_each(console::remark);
         }
         Evaluated { file, targets, evaluation, failures, warnings, file_warnings }
     }
+}
+
+/// What an evaluation failed at, and what deserves a look in its results: one message each.
+pub(super) fn messages(file: &GraphFile, targets: &[NodeId], evaluation: &Evaluation) -> (Vec<String>, Vec<String>) {
+    let (mut failures, mut warnings) = (Vec::new(), Vec::new());
+    for (id, outcome) in evaluation.outcomes() {
+        match &outcome.state {
+            OutcomeState::Failed(failure) => {
+                failures.push(file.about(Severity::Error, id, failure.port.as_deref(), &failure.message));
+            }
+            OutcomeState::Waiting(on) if targets.contains(&id) => {
+                failures.push(file.about(
+                    Severity::Error,
+                    id,
+                    None,
+                    &format!("not made, because \"{}\" failed", on.join("\", \"")),
+                ));
+            }
+            OutcomeState::Done { report, .. } => {
+                warnings.extend(report.warnings.iter().map(|w| file.about(Severity::Warning, id, None, w)));
+            }
+            _ => {}
+        }
+    }
+    (failures, warnings)
 }
 
 fn targets(file: &GraphFile, wanted: &[String]) -> Result<Vec<NodeId>, Vec<String>> {

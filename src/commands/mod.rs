@@ -21,6 +21,7 @@ mod results;
 pub mod run;
 pub mod verify;
 mod watch;
+pub mod wedge;
 mod write;
 
 /// How a command ended; the number is the exit code.
@@ -29,7 +30,7 @@ mod write;
 pub enum Ended {
     /// Everything was done.
     Done = 0,
-    /// A node failed, a limit was exceeded, or what was compared differs.
+    /// A node failed, a limit was exceeded, what was compared differs, or a wedge was stopped.
     Failed = 1,
     /// The graph or the arguments are wrong.
     Wrong = 2,

@@ -22,6 +22,9 @@ pub struct Arguments {
     /// Write the results to this file: .glb, .gltf, .obj, .ply (meshes), .json (curves); may be given several times.
     #[arg(short = 'o', long = "write", value_name = "FILE")]
     files: Vec<PathBuf>,
+    /// Make the folders of the files that are written where they are not there.
+    #[arg(long)]
+    create_folders: bool,
     /// Say what was done as JSON on stdout.
     #[arg(long)]
     json: bool,
@@ -151,7 +154,8 @@ impl<'a> Runner<'a> {
                 }
             };
             for (path, format) in arguments.files.iter().zip(&self.formats) {
-                keep(write::scene(path, *format, &scene));
+                let folder = if arguments.create_folders { write::make_folder_of(path) } else { Ok(()) };
+                keep(folder.and_then(|()| write::scene(path, *format, &scene)));
             }
             if let Some(path) = arguments.hashes.as_deref().filter(|path| *path != Path::new("-")) {
                 let text = Hashes::of(&evaluated).to_text();

@@ -138,8 +138,8 @@ mod tests {
         super::tell(&mut said)?;
         assert_eq!(
             String::from_utf8(said)?,
-            "height: Some(2.957)\n\
-             mean: 1.757 m\n\
+            "height: Some(2.956)\n\
+             mean: 1.887 m\n\
              events: planned 2, started hills, progress hills 0%, finished hills, started summit, finished summit\n\
              after a change: hills, summit\n\
              after undoing it: 0 run\n\

@@ -32,7 +32,7 @@ fn what_does_not_fit_is_refused_with_the_input() {
     let catalogue = catalogue();
     let everything = catalogue.kind("everything").unwrap();
     let run = |input: &str, literal| said(&Harness::new(everything).set(input, literal).run().unwrap_err());
-    assert_eq!(run("length", Literal::Number(20.0)), "input \"length\": 20 is out of range: give 0.001 to 10");
+    assert_eq!(run("length", Literal::Number(20.0)), "input \"length\": 20 m is out of range: give 0.001 to 10 m");
     assert!(run("choice", Literal::Choice("sideways".into())).contains("is not an option"));
     assert!(run("number", Literal::Boolean(true)).contains("it takes a number"));
     assert!(run("width", Literal::Number(1.0)).contains("\"everything\" has no such input; it has number, length"));

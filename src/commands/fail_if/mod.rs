@@ -55,17 +55,24 @@ pub(super) fn refuse_unknown(limits: &[Limit], graph: &Graph, targets: &[NodeId]
     refused
 }
 
-/// The name that was meant, and those that there are.
+/// The name that was meant, and those that there are: of the node that is named, where there is one.
 fn remedy(limit: &Limit, known: &[(&str, String)]) -> String {
-    let whole: Vec<String> = known.iter().map(|(node, name)| format!("{node}.{name}")).collect();
-    let candidates = whole.iter().map(String::as_str).chain(known.iter().map(|(_, name)| name.as_str()));
-    let hint = closest(&limit.path, candidates).map(|name| format!("did you mean \"{name}\"? ")).unwrap_or_default();
-    let more = if whole.len() > NAMES {
-        format!(" and {} more (maquette nodes KIND)", whole.len() - NAMES)
-    } else {
-        String::new()
-    };
-    let names = if whole.is_empty() { "none".to_owned() } else { whole[..whole.len().min(NAMES)].join(", ") };
+    let whole = |(node, name): &(&str, String)| format!("{node}.{name}");
+    // The right figure of a wrong node is more likely meant than another figure.
+    let named: Vec<String> =
+        known.iter().filter(|(_, name)| limit.path.ends_with(&format!(".{name}"))).map(whole).collect();
+    let all: Vec<String> = known.iter().map(whole).collect();
+    let shorter = known.iter().map(|(_, name)| name.as_str());
+    let meant = closest(&limit.path, named.iter().map(String::as_str))
+        .or_else(|| named.first().map(String::as_str))
+        .or_else(|| closest(&limit.path, all.iter().map(String::as_str).chain(shorter)));
+    let hint = meant.map(|name| format!("did you mean \"{name}\"? ")).unwrap_or_default();
+    let own: Vec<String> =
+        known.iter().filter(|(node, _)| limit.path.starts_with(&format!("{node}."))).map(whole).collect();
+    let listed = if own.is_empty() { all } else { own };
+    let more = listed.len().saturating_sub(NAMES);
+    let more = if more > 0 { format!(" and {more} more (maquette nodes KIND)") } else { String::new() };
+    let names = if listed.is_empty() { "none".to_owned() } else { listed[..listed.len().min(NAMES)].join(", ") };
     format!("{hint}known figures: {names}{more}")
 }
 
