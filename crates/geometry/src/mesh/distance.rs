@@ -3,10 +3,9 @@
 use glam::DVec3;
 
 use super::Mesh;
-use super::measure::corner_points;
-use super::triangulate::triangles;
+use super::triangle_tree::{Content, Node, TriangleTree};
 
-/// A mesh has no polygons to measure a distance to.
+/// A mesh has no polygons to measure a distance to or to hit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the mesh has no polygons, and so no distance to it")]
 pub struct NoPolygons;
@@ -24,76 +23,36 @@ pub struct Nearest {
 
 /// The triangles of a mesh in a hierarchy of boxes: made once, asked often.
 ///
-/// The boxes are halved at the median of the triangles' centres along the longest side, down to 4 triangles. Making it
-/// takes O(n log n), a question about O(log n). The published crates for this either bring their own algebra
-/// (`parry3d-f64`, `bvh`) or work in `f32`.
+/// A question takes about O(log n). The published crates for this either bring their own algebra (`parry3d-f64`, `bvh`)
+/// or work in `f32`.
 #[derive(Clone, Debug)]
 pub struct MeshDistance {
-    nodes: Vec<Node>,
-    triangles: Vec<Triangle>,
+    tree: TriangleTree,
 }
-
-#[derive(Clone, Copy, Debug)]
-struct Triangle {
-    points: [DVec3; 3],
-    polygon: usize,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Node {
-    low: DVec3,
-    high: DVec3,
-    content: Content,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum Content {
-    /// Places in the list of triangles.
-    Leaf { from: usize, to: usize },
-    /// The left child follows its parent.
-    Inner { right: usize },
-}
-
-const LEAF: usize = 4;
 
 impl MeshDistance {
-    /// Sorts the [`triangles`] of a mesh, its quads split along the shorter diagonal.
+    /// Sorts the [`triangles`](super::triangles) of a mesh, its quads split along the shorter diagonal.
     ///
     /// # Errors
     /// [`NoPolygons`] where the mesh is empty.
     pub fn new(mesh: &Mesh) -> Result<Self, NoPolygons> {
-        let mut polygon = 0;
-        let mut list: Vec<Triangle> = triangles(mesh)
-            .map(|corners| {
-                while mesh.corner_range(polygon).end <= corners[0] {
-                    polygon += 1;
-                }
-                Triangle { points: corner_points(mesh, corners), polygon }
-            })
-            .collect();
-        if list.is_empty() {
-            return Err(NoPolygons);
-        }
-        let count = list.len();
-        let mut nodes = Vec::with_capacity(count);
-        build(&mut nodes, &mut list, 0, count);
-        Ok(Self { nodes, triangles: list })
+        Ok(Self { tree: TriangleTree::new(mesh).ok_or(NoPolygons)? })
     }
 
     /// The nearest point of the mesh. Where several are equally near it is always the same one.
     ///
     /// For a point that is not finite, neither is the distance.
     pub fn nearest(&self, point: DVec3) -> Nearest {
-        let first = &self.triangles[0];
+        let first = &self.tree.triangles[0];
         let mut best = (first.points[0], first.points[0].distance_squared(point), first.polygon);
-        let mut open = vec![(0, box_distance_squared(&self.nodes[0], point))];
+        let mut open = vec![(0, box_distance_squared(&self.tree.nodes[0], point))];
         while let Some((node, distance)) = open.pop() {
             if distance > best.1 {
                 continue;
             }
-            match self.nodes[node].content {
+            match self.tree.nodes[node].content {
                 Content::Leaf { from, to } => {
-                    for triangle in &self.triangles[from..to] {
+                    for triangle in &self.tree.triangles[from..to] {
                         let on = nearest_on_triangle(point, triangle.points);
                         let distance = on.distance_squared(point);
                         if distance < best.1 {
@@ -102,38 +61,14 @@ impl MeshDistance {
                     }
                 }
                 Content::Inner { right } => {
-                    let left = (node + 1, box_distance_squared(&self.nodes[node + 1], point));
-                    let right = (right, box_distance_squared(&self.nodes[right], point));
+                    let left = (node + 1, box_distance_squared(&self.tree.nodes[node + 1], point));
+                    let right = (right, box_distance_squared(&self.tree.nodes[right], point));
                     open.extend(if left.1 <= right.1 { [right, left] } else { [left, right] });
                 }
             }
         }
         Nearest { point: best.0, distance: best.1.sqrt(), polygon: best.2 }
     }
-}
-
-/// Adds the node of `triangles[from..to]` and all below it.
-fn build(nodes: &mut Vec<Node>, triangles: &mut [Triangle], from: usize, to: usize) {
-    let own = &mut triangles[from..to];
-    let corners = own.iter().flat_map(|t| t.points);
-    let (low, high) = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
-    let place = nodes.len();
-    nodes.push(Node { low, high, content: Content::Leaf { from, to } });
-    if own.len() <= LEAF {
-        return;
-    }
-    let centre = |t: &Triangle| t.points[0] + t.points[1] + t.points[2];
-    let (first, last) =
-        own.iter().map(centre).fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
-    let axis = (last - first).max_position();
-    let middle = own.len() / 2;
-    own.select_nth_unstable_by(middle, |a, b| {
-        centre(a)[axis].total_cmp(&centre(b)[axis]).then(a.polygon.cmp(&b.polygon))
-    });
-    build(nodes, triangles, from, from + middle);
-    let right = nodes.len();
-    build(nodes, triangles, from + middle, to);
-    nodes[place].content = Content::Inner { right };
 }
 
 fn box_distance_squared(node: &Node, point: DVec3) -> f64 {
@@ -177,6 +112,8 @@ pub fn nearest_on_triangle(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::measure::corner_points;
+    use crate::mesh::triangulate::triangles;
 
     fn bumpy(width: u32) -> Mesh {
         let height = |x: u32, z: u32| (f64::from(x) * 0.7).sin() * (f64::from(z) * 0.4).cos();

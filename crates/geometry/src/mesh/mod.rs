@@ -5,13 +5,17 @@ pub mod distance;
 pub(crate) mod ear_clipping;
 pub mod measure;
 mod polygon;
+pub mod ray;
+pub mod slice;
 pub mod topology;
 pub mod transform;
+mod triangle_tree;
 pub mod triangulate;
 
 pub use check::{MeshCheck, check, check_while};
 pub use distance::{MeshDistance, Nearest};
 pub use polygon::{Mesh, MeshError};
+pub use ray::{MeshRays, RayHit};
 pub use topology::Topology;
 pub use transform::{TransformError, flipped, join, join_while, transform, transform_while};
 pub use triangulate::triangles;

@@ -127,7 +127,7 @@ pub(super) fn label(curve: &Curve, kind: &str, number: usize) -> String {
 }
 
 /// Metres with three significant digits, down to the micrometre.
-pub(super) fn metres(length: f64) -> String {
+pub(crate) fn metres(length: f64) -> String {
     let decimals = (2.0 - length.abs().log10().floor()).clamp(0.0, 6.0) as usize;
     format!("{length:.decimals$} m")
 }
@@ -141,7 +141,8 @@ pub(super) fn listed(names: &[String]) -> String {
     }
 }
 
-fn place(p: DVec3) -> String {
+/// A point to the millimetre.
+pub(crate) fn place(p: DVec3) -> String {
     // Adding zero turns -0.000 into 0.000.
     let rounded = (p * 1000.0).round() / 1000.0 + DVec3::ZERO;
     format!("({:.3}, {:.3}, {:.3})", rounded.x, rounded.y, rounded.z)

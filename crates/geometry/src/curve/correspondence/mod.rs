@@ -19,6 +19,7 @@ mod twist;
 pub use axis::AxisSource;
 pub use error::SortError;
 pub use explain::Decision;
+pub(crate) use explain::{metres, place};
 
 use super::Curve;
 use axis::{Axis, Station};

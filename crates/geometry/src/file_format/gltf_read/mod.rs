@@ -1,12 +1,14 @@
-//! glTF 2.0 into meshes.
+//! glTF 2.0 into meshes and skeletons.
 
 mod container;
 mod primitive;
 mod scene_walk;
+mod skeleton;
 
 use container::Container;
 use gltf_json::mesh;
 use primitive::{Attributes, TriangleSoup};
+pub use skeleton::{BoneError, Joint, Skeleton, skeleton};
 
 use super::ReadError;
 use super::pace::Pace;
@@ -29,7 +31,7 @@ const TRIANGLES: usize = 1 << 14;
 ///
 /// The nodes are those of the default scene (the first where none is set, all where there is none), parents before
 /// children. Lists, strips and fans of triangles are read and the primitives of a node joined; points and lines are
-/// ignored, and so are materials, textures, poses and morph targets. Corners at equal positions share a vertex, whatever
+/// ignored, and so are materials, textures, poses ([`skeleton`] gives the joints) and morph targets. Corners at equal positions share a vertex, whatever
 /// their normals and UVs; triangles of which two corners are one vertex are left out. Normals and UVs (v turned to
 /// run upward) are kept where every primitive of the node has them; a zero normal becomes that of its triangle. Nodes
 /// that mirror keep their outside outside. A mesh takes its node's name, else its own.

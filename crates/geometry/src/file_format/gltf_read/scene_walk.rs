@@ -15,25 +15,43 @@ pub(super) struct Placed {
     pub(super) world: DMat4,
 }
 
+/// A node of the scene.
+pub(super) struct Visited {
+    /// Index of the node.
+    pub(super) node: usize,
+    /// Index of the node above, where there is one.
+    pub(super) parent: Option<usize>,
+    /// From the node's space to the world.
+    pub(super) world: DMat4,
+}
+
 /// The nodes of the scene that show a mesh, parents before children and siblings in order.
 pub(super) fn nodes_with_meshes(root: &Root) -> Result<Vec<Placed>, ReadError> {
+    let placed = |visited: Visited| {
+        let node = root.nodes.get(visited.node)?;
+        // A skinned mesh stands where its skeleton is, wherever its node is (glTF 2.0, 3.7.3.3).
+        let world = if node.skin.is_some() { DMat4::IDENTITY } else { visited.world };
+        Some(Placed { node: visited.node, mesh: node.mesh?, world })
+    };
+    Ok(nodes(root)?.into_iter().filter_map(placed).collect())
+}
+
+/// The nodes of the scene, parents before children and siblings in order.
+pub(super) fn nodes(root: &Root) -> Result<Vec<Visited>, ReadError> {
     let mut visited = vec![false; root.nodes.len()];
-    let mut pending: Vec<(usize, DMat4)> = roots(root)?.into_iter().rev().map(|node| (node, DMat4::IDENTITY)).collect();
+    let mut pending: Vec<(usize, Option<usize>, DMat4)> =
+        roots(root)?.into_iter().rev().map(|node| (node, None, DMat4::IDENTITY)).collect();
     let mut found = Vec::new();
-    while let Some((index, parent)) = pending.pop() {
+    while let Some((index, parent, above)) = pending.pop() {
         let place = || format!("node {index}");
         let node = root.nodes.get(index).ok_or_else(|| malformed(place(), "it is not there"))?;
         if std::mem::replace(&mut visited[index], true) {
             return Err(malformed(place(), "it has two parents, or is its own ancestor"));
         }
-        let world = parent * local(node);
-        if let Some(mesh) = node.mesh {
-            // A skinned mesh stands where its skeleton is, wherever its node is (glTF 2.0, 3.7.3.3).
-            let world = if node.skin.is_some() { DMat4::IDENTITY } else { world };
-            found.push(Placed { node: index, mesh, world });
-        }
+        let world = above * local(node);
+        found.push(Visited { node: index, parent, world });
         let children = node.children.as_deref().unwrap_or_default();
-        pending.extend(children.iter().rev().map(|child| (child.value(), world)));
+        pending.extend(children.iter().rev().map(|child| (child.value(), Some(index), world)));
     }
     Ok(found)
 }
