@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::knots;
 use super::pole::{self, PoleShape, RoundPole};
 use super::skin::{SkinError, SkinOptions};
-use super::spline::{Ends, Hermite, SlopeSystem};
+use super::spline::{End, Ends, Hermite, SlopeSystem};
 use crate::sections::Sections;
 
 /// Vertices row after row. A row at a pole has a single vertex.
@@ -90,13 +90,14 @@ pub(crate) fn sample(
             *slope = -*outward;
         }
     }
-    let ends = Ends::Open { start_given: tips[0].is_some(), end_given: tips[1].is_some() };
+    let given = |tip: &Option<RoundPole>| if tip.is_some() { End::Slope } else { End::Natural };
+    let ends = Ends::Open { start: given(&tips[0]), end: given(&tips[1]) };
     let system = SlopeSystem::new(intervals, ends);
     system.solve(points, &mut slopes, nodes);
 
     let asked = |done: f64| if progress(done) { Ok(()) } else { Err(SkinError::Cancelled) };
     asked(0.0)?;
-    let ends = if closed { Ends::Periodic } else { Ends::Open { start_given: false, end_given: false } };
+    let ends = if closed { Ends::Periodic } else { Ends::Open { start: End::Natural, end: End::Natural } };
     let across = SlopeSystem::new(knots::across(sections, options.parameter, poles), ends);
     let point = spread(points, &across, nodes, options.columns);
     asked(0.05)?;
@@ -195,13 +196,13 @@ fn spread(values: &[DVec3], system: &SlopeSystem, nodes: usize, steps: usize) ->
 }
 
 /// Unit normal of two tangents, or zero where they are parallel.
-fn unit_normal(across: DVec3, along: DVec3) -> DVec3 {
+pub(crate) fn unit_normal(across: DVec3, along: DVec3) -> DVec3 {
     let normal = across.cross(along);
     let square = normal.length_squared();
     if square > 1e-24 * across.length_squared() * along.length_squared() { normal / square.sqrt() } else { DVec3::ZERO }
 }
 
-fn shares_across(points: &[DVec3], columns: usize, cells: usize) -> Vec<f64> {
+pub(crate) fn shares_across(points: &[DVec3], columns: usize, cells: usize) -> Vec<f64> {
     let mut lengths = vec![0.0; cells];
     for row in points.chunks_exact(columns) {
         for (k, length) in lengths.iter_mut().enumerate() {
@@ -212,7 +213,7 @@ fn shares_across(points: &[DVec3], columns: usize, cells: usize) -> Vec<f64> {
 }
 
 /// Measured at the columns through the given points only.
-fn shares_along(grid: &Grid, step: usize) -> Vec<f64> {
+pub(crate) fn shares_along(grid: &Grid, step: usize) -> Vec<f64> {
     let length = |row: usize| {
         let point = |row: usize, column: usize| grid.positions[grid.vertex(row, column) as usize];
         (0..grid.columns).step_by(step).map(|column| point(row, column).distance(point(row + 1, column))).sum()

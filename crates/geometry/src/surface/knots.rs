@@ -21,7 +21,7 @@ pub enum UParameter {
 }
 
 impl UParameter {
-    fn interval(self, distance: f64) -> f64 {
+    pub(super) fn interval(self, distance: f64) -> f64 {
         match self {
             Self::Uniform => 1.0,
             Self::ChordLength => distance,
@@ -60,7 +60,7 @@ pub(crate) fn across(sections: &Sections, parameter: UParameter, poles: &[bool])
 }
 
 /// Points that coincide in all rows get a small interval instead of none, which no spline can have.
-fn lifted(mut intervals: Vec<f64>) -> Vec<f64> {
+pub(super) fn lifted(mut intervals: Vec<f64>) -> Vec<f64> {
     let largest = intervals.iter().copied().fold(0.0, f64::max);
     for interval in &mut intervals {
         *interval = interval.max(1e-9 * largest);

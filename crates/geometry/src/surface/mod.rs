@@ -1,13 +1,16 @@
 //! Surfaces through stacks of cross-sections.
 
+pub mod analytic;
 mod cap;
 pub mod fairness;
 mod grid;
 mod knots;
+pub mod level_of_detail;
 mod parts;
 mod pole;
 pub mod skin;
 mod spline;
+pub mod tessellate;
 #[cfg(test)]
 mod tests;
 

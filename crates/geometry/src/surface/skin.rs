@@ -202,7 +202,7 @@ fn check(sections: &Sections, options: &SkinOptions) -> Result<Vec<bool>, SkinEr
 }
 
 /// The polygons between a row of vertices and the next one.
-fn strip(parts: &mut MeshParts, grid: &Grid, row: usize) {
+pub(crate) fn strip(parts: &mut MeshParts, grid: &Grid, row: usize) {
     let corner = |row: usize, column: usize, u: f64| -> Corner {
         let vertex = grid.vertex(row, column);
         (vertex, grid.normals[vertex as usize], DVec2::new(u, grid.along[row]))

@@ -11,15 +11,29 @@ use glam::DVec3;
 pub(crate) enum Ends {
     /// The last knot is followed by the first: one interval a knot.
     Periodic,
-    /// Two ends, each natural (second derivative 0) or with its slope given.
-    Open { start_given: bool, end_given: bool },
+    /// Two ends.
+    Open { start: End, end: End },
+}
+
+/// What is known at an end of a spline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum End {
+    /// The second derivative is 0.
+    Natural,
+    /// The slope is given.
+    Slope,
+    /// Slope and second derivative are given: the interval at this end is of degree 4 instead of 3 (of degree 5 where
+    /// it is the only one and both ends are so).
+    SlopeAndSecond,
 }
 
 /// The factored system for the slopes at the knots of a C2 cubic spline.
 ///
 /// With intervals `h` and chord slopes `d`, each inner knot demands
 /// `h_i m_(i-1) + 2 (h_(i-1) + h_i) m_i + h_(i-1) m_(i+1) = 3 (h_i d_(i-1) + h_(i-1) d_i)`; a natural end
-/// `2 m_0 + m_1 = 3 d_0`. Solved by elimination without pivots (the matrix is diagonally dominant), the periodic one
+/// `2 m_0 + m_1 = 3 d_0`. Behind an end interval `h_0` with a given second derivative `c` the demand is
+/// `3 h_1 m_0 + (2 h_0 + 3 h_1) m_1 + h_0 m_2 = 6 h_1 d_0 + 3 h_0 d_1 - h_0 h_1 c/2`, and mirrored at the other end with
+/// `+ c`. Solved by elimination without pivots (the matrix is diagonally dominant), the periodic one
 /// with a Sherman-Morrison correction.
 #[derive(Clone, Debug)]
 pub(crate) struct SlopeSystem {
@@ -50,12 +64,20 @@ impl SlopeSystem {
                 upper[i] = before;
             }
         }
-        if let Ends::Open { start_given, end_given } = ends {
-            if !start_given {
+        if let Ends::Open { start, end } = ends {
+            if start == End::Natural {
                 (diagonal[0], upper[0]) = (2.0, 1.0);
             }
-            if !end_given {
+            if end == End::Natural {
                 (diagonal[count - 1], lower[count - 1]) = (2.0, 1.0);
+            }
+            if start == End::SlopeAndSecond && count > 2 {
+                diagonal[1] += lower[1];
+                lower[1] *= 3.0;
+            }
+            if end == End::SlopeAndSecond && count > 2 {
+                diagonal[count - 2] += upper[count - 2];
+                upper[count - 2] *= 3.0;
             }
         }
         let corners = periodic.then(|| {
@@ -105,6 +127,11 @@ impl SlopeSystem {
     /// Writes the slope at each knot of as many columns as there are `lanes`. Both arrays hold the first knot of all
     /// columns, then the second, and so on. Slopes that are given must stand in `slopes` before.
     pub fn solve(&self, values: &[DVec3], slopes: &mut [DVec3], lanes: usize) {
+        self.solve_with(values, slopes, lanes, [&[], &[]]);
+    }
+
+    /// As [`SlopeSystem::solve`], with the second derivatives at the ends where they are given, one a column.
+    pub fn solve_with(&self, values: &[DVec3], slopes: &mut [DVec3], lanes: usize, seconds: [&[DVec3]; 2]) {
         let count = self.knots();
         let periodic = self.ends == Ends::Periodic;
         let row = |knot: usize| &values[knot * lanes..(knot + 1) * lanes];
@@ -120,8 +147,21 @@ impl SlopeSystem {
                 for (k, own) in own.iter_mut().enumerate() {
                     *own = to_before * (at[k] - before[k]) + to_after * (after[k] - at[k]);
                 }
-            } else if let Ends::Open { start_given, end_given } = self.ends {
-                let given = if i == 0 { start_given } else { end_given };
+                if let Ends::Open { start, end } = self.ends {
+                    let half = 0.5 * h_before * h_after;
+                    if start == End::SlopeAndSecond && i == 1 {
+                        for (k, (own, second)) in own.iter_mut().zip(seconds[0]).enumerate() {
+                            *own += to_before * (at[k] - before[k]) - half * *second;
+                        }
+                    }
+                    if end == End::SlopeAndSecond && i + 2 == count {
+                        for (k, (own, second)) in own.iter_mut().zip(seconds[1]).enumerate() {
+                            *own += to_after * (after[k] - at[k]) + half * *second;
+                        }
+                    }
+                }
+            } else if let Ends::Open { start, end } = self.ends {
+                let given = if i == 0 { start } else { end } != End::Natural;
                 let (from, to, h) =
                     if i == 0 { (at, after, self.intervals[0]) } else { (before, at, self.intervals[previous]) };
                 if !given {
@@ -206,8 +246,8 @@ mod tests {
     #[test]
     fn agrees_with_reference_values() {
         let values = [0.0, 1.0, 0.5, 2.0];
-        let natural = Ends::Open { start_given: false, end_given: false };
-        let clamped = Ends::Open { start_given: true, end_given: true };
+        let natural = Ends::Open { start: End::Natural, end: End::Natural };
+        let clamped = Ends::Open { start: End::Slope, end: End::Slope };
         for (u, of_natural, of_clamped) in
             [(0.2, 0.8048, 0.6672), (0.5, 0.7125, 0.6597222222222), (0.9, 1.3771, 1.7761)]
         {
@@ -246,7 +286,7 @@ mod tests {
         let knots = [0.0, 0.1, 0.7, 1.0, 1.9];
         let values = knots.map(f);
         let intervals: Vec<f64> = knots.windows(2).map(|k| k[1] - k[0]).collect();
-        let ends = Ends::Open { start_given: true, end_given: true };
+        let ends = Ends::Open { start: End::Slope, end: End::Slope };
         for (u, m) in knots.iter().zip(slopes(&values, &intervals, ends, [df(0.0), df(1.9)])) {
             assert!((m - df(*u)).length() < 1e-12, "{m} at {u}");
         }
@@ -256,7 +296,7 @@ mod tests {
     fn columns_are_solved_side_by_side_as_one_by_one() {
         let value = |i: usize, lane: usize| DVec3::new((i * 3 + lane) as f64, (i * lane) as f64, 0.3).map(f64::sin);
         let intervals = vec![0.5, 1.0, 0.2, 0.7, 2.0];
-        for ends in [Ends::Periodic, Ends::Open { start_given: true, end_given: false }] {
+        for ends in [Ends::Periodic, Ends::Open { start: End::Slope, end: End::Natural }] {
             let system = SlopeSystem::new(intervals.clone(), ends);
             let count = system.knots();
             let values: Vec<DVec3> = (0..count).flat_map(|i| (0..3).map(move |lane| value(i, lane))).collect();
@@ -272,7 +312,7 @@ mod tests {
 
     #[test]
     fn two_knots_are_a_straight_line() {
-        let natural = Ends::Open { start_given: false, end_given: false };
+        let natural = Ends::Open { start: End::Natural, end: End::Natural };
         let m = slopes(&[DVec3::ZERO, DVec3::X], &[0.5], natural, [DVec3::ZERO; 2]);
         assert!(m.iter().all(|m| (*m - 2.0 * DVec3::X).length() < 1e-15));
     }
