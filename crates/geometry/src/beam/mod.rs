@@ -7,22 +7,28 @@
 //! right side `h^4 f`) is of second order in `h`; its linear system is solved to round-off for any permitted size.
 
 mod banded;
+mod cardinals;
 mod closed;
 pub mod closed_form;
+#[cfg(test)]
+mod difference_tests;
 mod error;
 mod hermite;
 mod open;
 mod quantity;
 mod stiffness;
 mod system;
+mod tension_spline;
 
 pub(crate) use banded::BandedFactor;
+pub use cardinals::OpenCardinals;
 pub use closed::ClosedBeam;
 pub use error::BeamError;
 pub use hermite::HermiteBasis;
-pub use open::{EndCondition, OpenBeam, OpenValues, sculpting_forces};
+pub use open::{EndCondition, EndReaction, OpenBeam, OpenValues, sculpting_forces};
 pub use quantity::Quantity;
 pub use stiffness::{Stiffness, StiffnessError};
+pub use tension_spline::{SplineEnd, TensionSpline};
 
 /// Most nodes of a beam: beyond it the difference equations lose their digits faster than refinement restores them.
 pub const MOST_NODES: usize = 8192;

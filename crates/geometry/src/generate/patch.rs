@@ -69,12 +69,10 @@ mod tests {
         let forces: Vec<DVec3> = f5.iter().zip(&f6).map(|(f, g)| *f * (1.0 - s) + *g * s).collect();
         let beam = OpenBeam::new(6, &[], EndCondition::Clamped, EndCondition::Clamped, stiffness).unwrap();
         let values = OpenValues {
-            left: a,
-            right: b,
             left_tangent: t[0] * (1.0 - s) + t[2] * s,
             right_tangent: t[1] * (1.0 - s) + t[3] * s,
-            pins: &[],
             forces: &forces,
+            ..OpenValues::ends(a, b)
         };
         let solved = beam.solve(&values).unwrap();
         let blended = blend_generators(&c5, &c6, s, (a, b), &HermiteBasis::new(6, stiffness).unwrap());
