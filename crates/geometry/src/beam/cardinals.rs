@@ -8,14 +8,15 @@ use super::system::check_values;
 use super::tension_spline::{SplineEnd, TensionSpline};
 
 /// Functions of which every beam curve between clamped ends with given pins is the weighted sum: computed once, a curve
-/// costs one product a function and node.
+/// costs one product a function and node. Without pins they are the Hermite basis of the beam, `d = P0 H00 + T0 H10 +
+/// P1 H01 + T1 H11` for end positions `P` and end tangents `T = dP/du`, which for `k_s = 0` is the cubic one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenCardinals {
     /// Positions of the left end, of each pin in the order given, and of the right end; one value a node each.
     positions: Vec<Vec<f64>>,
     /// Tangents `dP/du` of the left and the right end; one value a node each.
     tangents: [Vec<f64>; 2],
-    /// Nodes at which positions are given: 0, the pins, the last.
+    /// Nodes at which positions are given.
     held: Vec<usize>,
 }
 
@@ -80,6 +81,11 @@ impl OpenCardinals {
         &self.positions
     }
 
+    /// Nodes at which positions are given: 0, the pins in the order given, the last.
+    pub fn held(&self) -> &[usize] {
+        &self.held
+    }
+
     /// Functions of the tangents at the left and the right end.
     pub fn tangents(&self) -> &[Vec<f64>; 2] {
         &self.tangents
@@ -110,6 +116,7 @@ impl OpenCardinals {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::beam::closed_form::ExactHermite;
     use glam::DVec2;
 
     #[test]
@@ -154,6 +161,58 @@ mod tests {
             };
             let order = (error(1025) / error(2049)).log2();
             assert!((order - 2.0).abs() < 0.05, "ratio {ratio}: order {order}");
+        }
+    }
+
+    /// Both kinds without pins: H00, H10, H01, H11.
+    fn hermite(cardinals: &OpenCardinals) -> [&[f64]; 4] {
+        let (p, t) = (cardinals.positions(), cardinals.tangents());
+        [&p[0], &t[0], &p[1], &t[1]]
+    }
+
+    #[test]
+    fn without_pins_they_are_the_hermite_basis() {
+        let error = |cardinals: &OpenCardinals, stiffness: Stiffness| {
+            let exact = ExactHermite::new(stiffness);
+            let nodes = cardinals.nodes();
+            (0..nodes)
+                .flat_map(|i| {
+                    let wanted = exact.values(i as f64 / (nodes - 1) as f64);
+                    [0, 1, 2, 3].map(|k| (hermite(cardinals)[k][i] - wanted[k]).abs())
+                })
+                .fold(0.0, f64::max)
+        };
+        for ratio in [0.0, 2.8, 100.0] {
+            let stiffness = Stiffness::new(1.0, ratio).unwrap();
+            assert!(error(&OpenCardinals::exact(65, &[], stiffness).unwrap(), stiffness) < 1e-12);
+            for nodes in [65, 129, 257, 2049] {
+                let off = |nodes| error(&OpenCardinals::differences(nodes, &[], stiffness).unwrap(), stiffness);
+                let order = (off(nodes) / off(2 * nodes - 1)).log2();
+                assert!((order - 2.0).abs() < 0.05, "ratio {ratio}, {nodes} nodes: order {order}");
+            }
+        }
+    }
+
+    #[test]
+    fn ends_are_exact_and_values_stay_bounded_however_taut() {
+        for ratio in [0.0, 2.8, 1e8, 1e12] {
+            let stiffness = Stiffness::new(1.0, ratio).unwrap();
+            for nodes in [4, 5, 64, 4096] {
+                for cardinals in [
+                    OpenCardinals::differences(nodes, &[], stiffness).unwrap(),
+                    OpenCardinals::exact(nodes, &[], stiffness).unwrap(),
+                ] {
+                    let [h00, h10, h01, h11] = hermite(&cardinals);
+                    let last = nodes - 1;
+                    let near = |found: [f64; 4], wanted: [f64; 4]| {
+                        found.iter().zip(wanted).all(|(f, w)| (f - w).abs() < 1e-15)
+                    };
+                    assert!(near([h00[0], h01[0], h10[0], h11[0]], [1.0, 0.0, 0.0, 0.0]));
+                    assert!(near([h00[last], h01[last], h10[last], h11[last]], [0.0, 1.0, 0.0, 0.0]));
+                    assert!(h01.windows(2).all(|w| w[1] >= w[0] - 1e-14), "ratio {ratio}, {nodes} nodes");
+                    assert!(h11.iter().all(|h| (-0.15..=1e-14).contains(h)), "ratio {ratio}, {nodes} nodes");
+                }
+            }
         }
     }
 

@@ -13,7 +13,6 @@ pub mod closed_form;
 #[cfg(test)]
 mod difference_tests;
 mod error;
-mod hermite;
 mod open;
 mod quantity;
 mod stiffness;
@@ -24,7 +23,6 @@ pub(crate) use banded::BandedFactor;
 pub use cardinals::OpenCardinals;
 pub use closed::ClosedBeam;
 pub use error::BeamError;
-pub use hermite::HermiteBasis;
 pub use open::{EndCondition, EndReaction, OpenBeam, OpenValues, sculpting_forces};
 pub use quantity::Quantity;
 pub use stiffness::{Stiffness, StiffnessError};
