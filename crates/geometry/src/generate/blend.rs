@@ -83,8 +83,8 @@ pub fn blend(
             out * (arc_speed(out, chord, 1.0) * start.strength),
             back * (-arc_speed(back, -chord, 1.0) * end.strength),
         );
-        for (row, [h00, h10, h01, h11]) in rows.iter_mut().zip(&weights) {
-            row.push(p0 * *h00 + t0 * *h10 + p1 * *h01 + t1 * *h11);
+        for (row, weights) in rows.iter_mut().zip(&weights) {
+            row.push(generator([p0, p1], [t0, t1], *weights));
         }
     }
     report(progress, 1, 1)?;
@@ -97,13 +97,7 @@ pub fn blend(
     })
 }
 
-/// A generator of a blend: from `p0` with `dP/du = t0` to `p1` with `t1`, at `u` from 0 to 1 (thesis 5.5 solved exactly).
-#[cfg(test)]
-fn generator(p: [DVec3; 2], t: [DVec3; 2], hermite: &ExactHermite, u: f64) -> DVec3 {
-    let [h00, h10, h01, h11] = hermite.values(u);
+/// A point between two, from their tangents `dP/du`, by the Hermite basis of the beam.
+pub(super) fn generator(p: [DVec3; 2], t: [DVec3; 2], [h00, h10, h01, h11]: [f64; 4]) -> DVec3 {
     p[0] * h00 + t[0] * h10 + p[1] * h01 + t[1] * h11
 }
-
-#[cfg(test)]
-#[path = "blend_tests.rs"]
-mod tests;

@@ -117,3 +117,85 @@ impl Detail<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::super::test_shapes::{closed, cuff, dome, mouth, open, sphere_patch};
+    use super::*;
+    use crate::curve::{SortOptions, sort};
+
+    fn ring(height: f64) -> Curve {
+        closed("ring", 100, |a| DVec3::new(0.1 * a.cos(), height, -0.1 * a.sin()))
+    }
+
+    fn line(x: f64) -> Curve {
+        open("line", 4, |t| DVec3::new(x, t, x * x))
+    }
+
+    #[test]
+    fn curves_decide_and_the_message_tells_what_is_missing() {
+        let rings = [0.0, 0.1, 0.2, 0.3].map(ring);
+        let lines = [0.0, 0.1, 0.2, 0.3, 0.4].map(line);
+        let method = |rails: &[Curve], profiles: &[Curve]| Detail { rails, profiles, ..Detail::default() }.method(0.02);
+        assert_eq!(method(&lines[..4], &[]), Ok(Method::TwoViews));
+        assert_eq!(method(&sphere_patch(4, 9), &[]), Ok(Method::Network));
+        assert_eq!(method(&sphere_patch(3, 9), &[]), Ok(Method::Network));
+        assert_eq!(method(&lines[..1], &rings[..1]), Ok(Method::Arch));
+        assert_eq!(method(&lines, &rings[..1]), Ok(Method::ToApex));
+        assert_eq!(method(&lines[..2], &rings[..2]), Ok(Method::ThroughClosed));
+        assert_eq!(method(&lines, &rings), Ok(Method::ThroughClosed));
+        assert_eq!(method(&lines[..3], &lines[3..]), Ok(Method::Sheet));
+        assert_eq!(method(&[], &rings[..2]), Ok(Method::Blend));
+        for (rails, profiles, part) in [
+            (&[][..], &[][..], "4 outlines"),
+            (&lines[..2], &[], "3 or 4 borders"),
+            (&lines[..1], &rings[..2], "at least 2 rails"),
+            (&lines[..2], &lines[..1], "at least 2 profiles"),
+            (&[], &rings[..3], "draw rails"),
+            (&[], &rings[..1], "draw one rail"),
+        ] {
+            let message = method(rails, profiles).unwrap_err().to_string();
+            assert!(message.contains(part), "{message}");
+        }
+        let mixed = method(&lines[..2], &[ring(0.0), line(0.5)]).unwrap_err().to_string();
+        assert!(mixed.contains("all open or all closed"), "{mixed}");
+    }
+
+    #[test]
+    fn every_method_makes_its_detail() {
+        let options = GenerateOptions { sections: 12, nodes: 24, ..GenerateOptions::default() };
+        let made = |detail: &Detail<'_>| {
+            let method = detail.method(options.snap).unwrap();
+            (method, detail.generate(method, &options, &|_| true).unwrap().sections.len())
+        };
+        let sorted = sort(&mouth(40), &SortOptions::default()).unwrap();
+        let (rails, rim) = dome(4);
+        let (along, across) = cuff(40);
+        let tube: Vec<Curve> = (0..4).map(|k| open("rail", 4, |t| ring(0.2 * t).points()[25 * k])).collect();
+        let rings = [ring(0.0), ring(0.2)];
+        let (up, down) = (vec![DVec3::Y; 100], vec![-DVec3::Y; 100]);
+        let beyond = [Some(Neighbour::Directions(&up)), Some(Neighbour::Directions(&down))];
+        let arc = open("arc", 40, |t| DVec3::new(0.1 * (3.1416 * t).cos(), 0.1 * (3.1416 * t).sin(), 0.0));
+        let none = Detail::default();
+        for (detail, method) in [
+            (Detail { rails: &tube, ..none }, Method::TwoViews),
+            (Detail { rails: &tube, profiles: &rings, ..none }, Method::ThroughClosed),
+            (Detail { rails: &sorted.rails, profiles: &sorted.closed, ..none }, Method::ToApex),
+            (Detail { rails: &rails, profiles: std::slice::from_ref(&rim), ..none }, Method::ToApex),
+            (Detail { rails: std::slice::from_ref(&arc), profiles: &rings[..1], ..none }, Method::Arch),
+            (Detail { rails: &along, profiles: &across, ..none }, Method::Sheet),
+            (Detail { rails: &sphere_patch(4, 40), ..none }, Method::Network),
+            (Detail { profiles: &rings, neighbours: &beyond, ..none }, Method::Blend),
+        ] {
+            assert_eq!(made(&detail), (method, 12));
+        }
+        let refused =
+            |detail: Detail<'_>, method| detail.generate(method, &options, &|_| true).unwrap_err().to_string();
+        assert!(refused(Detail { profiles: &rings, ..none }, Method::Blend).contains("give a neighbour"));
+        assert!(refused(none, Method::TwoViews).contains("four open contours"));
+        assert!(refused(none, Method::ToApex).contains("one closed profile"));
+        assert!(refused(none, Method::Arch).contains("one rail"));
+    }
+}

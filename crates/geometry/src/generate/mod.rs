@@ -19,24 +19,38 @@
 mod alignment;
 mod apex;
 mod arch;
+#[cfg(test)]
+mod arch_tests;
 mod between_closed;
 mod blend;
+#[cfg(test)]
+mod blend_tests;
 mod case;
 mod centring;
 mod detail;
 mod error;
 mod feet;
 mod local_detail;
+#[cfg(test)]
+mod look_tests;
 mod neighbour;
 mod network;
+#[cfg(test)]
+mod network_tests;
 mod order;
 mod pace;
 mod patch;
 mod places;
 mod sheet;
+#[cfg(test)]
+mod sheet_tests;
 mod side;
 mod sweep;
+#[cfg(test)]
+mod test_shapes;
 mod to_apex;
+#[cfg(test)]
+mod to_apex_tests;
 mod turning;
 #[cfg(test)]
 mod turning_tests;

@@ -80,24 +80,48 @@ pub(super) struct Edge<'a> {
     arc: ArcLength<'a>,
     side: Which,
     origin: f64,
-    /// Speed of each rail along and across the border.
+    /// Speed of each rail along and across the border, in chords of the rail.
     rails: Vec<[f64; 2]>,
 }
 
+/// What stands on a border, for messages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Across {
+    Rail,
+    Profile,
+}
+
+impl Across {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Rail => "Rail",
+            Self::Profile => "Profile",
+        }
+    }
+}
+
 impl<'a> Edge<'a> {
-    /// Prepares the border at `side`, at which rails of these sampled points stand.
+    /// Prepares the border at `side`, at which rails (or profiles) of these sampled points stand. One of no length, at an
+    /// apex, is taken for like the one before.
     pub(super) fn new(
         neighbour: Neighbour<'a>,
         border: &'a Curve,
         side: Which,
         feet: &Feet,
-        sampled: &[Vec<DVec3>],
+        (across_it, sampled): (Across, &[Vec<DVec3>]),
         warnings: &mut Vec<String>,
     ) -> Result<Self, GenerateError> {
         neighbour.check(border)?;
         let mut edge =
             Self { neighbour, border, arc: ArcLength::of(border), side, origin: feet.origin, rails: Vec::new() };
+        let size = sampled.iter().map(|points| chord(points)).fold(0.0, f64::max);
         for (rail, (points, offset)) in sampled.iter().zip(&feet.offsets).enumerate() {
+            let chord = chord(points);
+            if chord <= 1e-9 * size {
+                let like = edge.rails.last().copied().unwrap_or([0.0, 1.0]);
+                edge.rails.push(like);
+                continue;
+            }
             let slope = end_slopes(points)[usize::from(side == Which::End)];
             let [along, across] = edge.axes(*offset, feet.points[rail])?;
             // Least squares in the neighbour's tangent plane.
@@ -108,38 +132,37 @@ impl<'a> Edge<'a> {
                 if rest > 1e-6 { [(a - cosine * b) / rest, (b - cosine * a) / rest] } else { [0.0, b] };
             let speed = slope.length();
             let bent = (slope - along * speed_along - across * speed_across).length().atan2(speed).to_degrees();
+            let (what, name) = (across_it.name(), border.name());
             if speed_across < LEAST_INWARD * speed {
                 (speed_along, speed_across) = (0.0, speed);
                 warnings.push(format!(
-                    "Rail {rail} runs along the {} curve (\"{}\") or back into its neighbour there, and is turned \
-                     inwards: draw it away from the border.",
-                    side.name(),
-                    border.name()
+                    "{what} {rail} runs along border \"{name}\" or back into the neighbour there, and is turned inwards: \
+                     draw it away from the border."
                 ));
             } else if bent > BENT {
                 warnings.push(format!(
-                    "Rail {rail} leaves the neighbour's surface at the {} curve (\"{}\") by {bent:.0} degrees, and is \
-                     bent there so that the joint is smooth: draw it on in the direction of the neighbour.",
-                    side.name(),
-                    border.name()
+                    "{what} {rail} leaves the neighbour's surface at border \"{name}\" by {bent:.0} degrees, and is bent \
+                     there so that the joint is smooth: draw it on in the direction of the neighbour."
                 ));
             }
-            edge.rails.push([speed_along, speed_across]);
+            edge.rails.push([speed_along / chord, speed_across / chord]);
         }
         Ok(edge)
     }
 
-    /// `dP/du` at `point`, `offset` behind the first foot, for the weight `w` of rail `next` against rail `patch`.
+    /// `dP/du` of a generator of these points, which leaves the border `offset` behind the first foot, for the weight `w`
+    /// of rail `next` against rail `patch`.
     pub(super) fn tangent(
         &self,
         [patch, next]: [usize; 2],
         w: f64,
         offset: f64,
-        point: DVec3,
+        generator: &[DVec3],
     ) -> Result<DVec3, GenerateError> {
-        let [along, across] = self.axes(offset, point)?;
+        let ends = [generator.first(), generator.last()].map(|end| end.copied().unwrap_or_default());
+        let [along, across] = self.axes(offset, ends[usize::from(self.side == Which::End)])?;
         let speed = |k: usize| self.rails[patch][k] * (1.0 - w) + self.rails[next][k] * w;
-        Ok(along * speed(0) + across * speed(1))
+        Ok((along * speed(0) + across * speed(1)) * ends[0].distance(ends[1]))
     }
 
     /// Unit directions along the border, and across it in the sense of the generators.
@@ -150,6 +173,10 @@ impl<'a> Edge<'a> {
         let across = self.neighbour.direction(self.border, &self.arc, s, point)?;
         Ok([along, if self.side == Which::End { -across } else { across }])
     }
+}
+
+fn chord(points: &[DVec3]) -> f64 {
+    points.first().zip(points.last()).map_or(0.0, |(first, last)| first.distance(*last))
 }
 
 /// Derivatives by `u` (0 to 1 from end to end) at both ends of points at equal `u`, by one-sided differences of third

@@ -119,7 +119,3 @@ fn apart(borders: &[Curve], border: usize, distance: f64, snap: f64) -> Generate
 pub(super) fn is_loop(curves: &[Curve], snap: f64) -> bool {
     (3..=4).contains(&curves.len()) && curves.iter().all(|curve| !curve.is_closed()) && loop_of(curves, snap).is_ok()
 }
-
-#[cfg(test)]
-#[path = "network_tests.rs"]
-mod tests;

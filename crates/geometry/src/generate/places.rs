@@ -11,17 +11,19 @@ use crate::curve::{ArcLength, Curve, closest};
 /// Rounds in which the nearest points of two curves are found from each other.
 const ROUNDS: usize = 64;
 
-/// Where an open rail comes nearest to a curve: its arc length and its point there. From the nearest of the rail's points
-/// and segments' middles, by closest points in turn.
+/// Places along a rail from which its nearest point to a curve is sought.
+const PROBES: usize = 64;
+
+/// Where an open rail comes nearest to a curve: its arc length and its point there. From the nearest of [`PROBES`] places
+/// at equal arc length, by closest points in turn.
 pub(super) fn nearest(rail: &Curve, curve: &Curve) -> (f64, DVec3) {
     let arc = ArcLength::of(rail);
     let mut best = (f64::INFINITY, 0.0);
-    for pair in arc.cumulative().windows(2) {
-        for s in [pair[0], 0.5 * (pair[0] + pair[1]), pair[1]] {
-            let distance = closest(curve, arc.point_at(s)).distance;
-            if distance < best.0 {
-                best = (distance, s);
-            }
+    for probe in 0..=PROBES {
+        let s = probe as f64 / PROBES as f64 * arc.length();
+        let distance = closest(curve, arc.point_at(s)).distance;
+        if distance < best.0 {
+            best = (distance, s);
         }
     }
     let mut s = best.1;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::feet::{Feet, Which};
-use super::neighbour::{Edge, Neighbour, end_slopes};
+use super::neighbour::{Across, Edge, Neighbour, end_slopes};
 use super::{GenerateError, Weights};
 use crate::beam::OpenCardinals;
 use crate::curve::Curve;
@@ -47,17 +47,18 @@ impl Side<'_> {
             origin: 0.0,
             gap: 0.0,
         };
-        let edge = Edge::new(self.neighbour, self.rail, Which::Start, &feet, &profiles, warnings)?;
+        let edge = Edge::new(self.neighbour, self.rail, Which::Start, &feet, (Across::Profile, &profiles), warnings)?;
         let mut span = 0;
         let mut lacks = Vec::with_capacity(rows.len());
         for (i, row) in rows.iter().enumerate() {
             while i > held[span + 1] {
                 span += 1;
             }
+            let field = field(row);
             let share = (i - held[span]) as f64 / (held[span + 1] - held[span]) as f64;
             let offset = self.crossings[span] * (1.0 - share) + self.crossings[span + 1] * share;
-            let wanted = edge.tangent([span, span + 1], Weights::Smooth.at(share), offset, row[column])?;
-            lacks.push(wanted - end_slopes(&field(row))[0]);
+            let wanted = edge.tangent([span, span + 1], Weights::Smooth.at(share), offset, &field)?;
+            lacks.push(wanted - end_slopes(&field)[0]);
         }
         let slopes = end_slopes(&lacks);
         let at_profiles: Vec<DVec3> = held.iter().map(|section| lacks[*section]).collect();

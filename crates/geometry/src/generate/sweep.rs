@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::feet::{Feet, Which};
-use super::neighbour::{Edge, Neighbour, end_slopes};
+use super::neighbour::{Across, Edge, Neighbour, end_slopes};
 use super::pace::Pace;
 use super::patch::blend_generators;
 use super::places::{apex, crossings};
@@ -118,13 +118,14 @@ pub(super) fn sweep(
                 Some(turning) => turning.generator(patch, weight, &offsets, &through, &functions),
                 None => blend_generators(&sampled[patch], &sampled[next], weight, &through, &functions),
             };
-            steer(&mut generator, &functions, |side| match &edges[side] {
-                Some(edge) => {
-                    let at = if side == 0 { 0 } else { through.len() - 1 };
-                    edge.tangent([patch, next], weight, offsets[at], through[at]).map(Some)
+            let mut tangents = [None, None];
+            for (end, edge) in edges.iter().enumerate() {
+                if let Some(edge) = edge {
+                    let at = if end == 0 { 0 } else { through.len() - 1 };
+                    tangents[end] = Some(edge.tangent([patch, next], weight, offsets[at], &generator)?);
                 }
-                None => Ok(None),
-            })?;
+            }
+            steer(&mut generator, &functions, tangents);
             for (row, point) in rows.iter_mut().zip(generator) {
                 row.push(point);
             }
@@ -257,20 +258,16 @@ fn edges<'a>(
     let last = drawing.profiles.len() - 1;
     let mut edge = |end: usize, profile: usize, side| -> Result<Option<Edge<'a>>, GenerateError> {
         let Some(neighbour) = drawing.neighbours[end] else { return Ok(None) };
-        Edge::new(neighbour, drawing.profiles[profile], side, &feet[profile], sampled, warnings).map(Some)
+        Edge::new(neighbour, drawing.profiles[profile], side, &feet[profile], (Across::Rail, sampled), warnings)
+            .map(Some)
     };
     Ok([edge(0, 0, Which::Start)?, if drawing.apex { None } else { edge(1, last, Which::End)? }])
 }
 
 /// Gives a generator the end tangents of its edges, by the tangents' cardinal functions.
-fn steer(
-    generator: &mut [DVec3],
-    functions: &OpenCardinals,
-    tangent: impl Fn(usize) -> Result<Option<DVec3>, GenerateError>,
-) -> Result<(), GenerateError> {
-    let wanted = [tangent(0)?, tangent(1)?];
+fn steer(generator: &mut [DVec3], functions: &OpenCardinals, wanted: [Option<DVec3>; 2]) {
     if wanted == [None, None] {
-        return Ok(());
+        return;
     }
     let slopes = end_slopes(generator);
     for ((wanted, slope), function) in wanted.into_iter().zip(slopes).zip(functions.tangents()) {
@@ -280,7 +277,6 @@ fn steer(
             }
         }
     }
-    Ok(())
 }
 
 /// Share of the size of all curves above which a gap is worth a warning. Our own choice: on a vest
