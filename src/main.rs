@@ -1,5 +1,6 @@
-//! The headless command of Maquette. Exit codes: 0 done, 1 a node failed, a --fail-if limit was exceeded or what was
-//! compared differs, 2 the graph or the arguments are wrong, 3 a result could not be written, or the program broke down.
+//! The headless command of Maquette. Exit codes: 0 done, 1 a node failed, a --fail-if limit was exceeded, what was
+//! compared differs or a wedge was stopped, 2 the graph or the arguments are wrong, 3 a result could not be written, or
+//! the program broke down.
 
 use std::process::ExitCode;
 
@@ -8,8 +9,8 @@ use maquette::commands::{self, Ended};
 
 /// Evaluates procedural modelling graphs: sketched curves in, models out.
 ///
-/// Exit codes: 0 done, 1 a node failed, a --fail-if limit was exceeded or what was compared differs, 2 the graph or the
-/// arguments are wrong, 3 a result could not be written, or the program broke down.
+/// Exit codes: 0 done, 1 a node failed, a --fail-if limit was exceeded, what was compared differs or a wedge was
+/// stopped, 2 the graph or the arguments are wrong, 3 a result could not be written, or the program broke down.
 #[derive(Parser)]
 #[command(version, about, long_about, max_term_width = 110)]
 struct Arguments {
@@ -24,8 +25,10 @@ enum Command {
     Fmt(commands::fmt::Arguments),
     Diff(commands::diff::Arguments),
     Verify(commands::verify::Arguments),
+    Freeze(commands::freeze::Arguments),
     Nodes(commands::nodes::Arguments),
     Render(commands::render::Arguments),
+    Wedge(Box<commands::wedge::Arguments>),
 }
 
 fn main() -> ExitCode {
@@ -39,8 +42,10 @@ fn main() -> ExitCode {
         Command::Fmt(arguments) => commands::fmt::fmt(arguments),
         Command::Diff(arguments) => commands::diff::diff(arguments),
         Command::Verify(arguments) => commands::verify::verify(arguments),
+        Command::Freeze(arguments) => commands::freeze::freeze(arguments),
         Command::Nodes(arguments) => commands::nodes::nodes(arguments),
         Command::Render(arguments) => commands::render::render(arguments),
+        Command::Wedge(arguments) => commands::wedge::wedge(arguments),
     });
     let ended = ended.unwrap_or_else(|_| {
         commands::console::error("maquette broke down; this is a mistake in the program, please report it");

@@ -384,7 +384,12 @@ fn json_holds_every_error_and_warning() {
     assert_eq!(warned["ok"], true);
     assert!(warned["warnings"][0].as_str().unwrap().contains("titel"), "{warned}");
     let checked = said(&["run", "graphs/neck.ron", "--json", "--report"]);
-    assert_eq!(checked["results"][0]["check"]["sound"], true);
+    let node = |name: &str| checked["nodes"].as_array().unwrap().iter().find(|n| n["name"] == name).unwrap();
+    let figure = |name: &str| node("neck")["figures"].as_array().unwrap().iter().find(|f| f["name"] == name).unwrap();
+    assert_eq!((&figure("faults")["value"], &figure("holes")["value"]), (&0.0.into(), &2.0.into()), "{checked}");
+    assert_eq!(figure("largest-fold")["unit"], "degrees");
+    let rails = &node("sorted")["tables"][0];
+    assert_eq!((&rails["columns"][2]["unit"], rails["rows"].as_array().unwrap().len()), (&"degrees".into(), 4));
     assert!(checked["threads"].as_u64().unwrap() >= 1);
 }
 

@@ -135,7 +135,7 @@ fn limits_fail_the_run_and_say_node_and_value() {
     for limit in ["body.largest-gape > 1", "bodies.largest-gap > 1", "surface.largest-gap > 1"] {
         let (code, _, said) = run(&[limit], &[]);
         assert!(
-            code == 2 && said.contains("no node measures that; known figures: body.largest-gap"),
+            code == 2 && said.contains("no node measures that; did you mean \"body.largest-gap\"? known figures: "),
             "{limit}: {said}"
         );
     }
@@ -143,6 +143,16 @@ fn limits_fail_the_run_and_say_node_and_value() {
         let (code, _, said) = run(&[limit], &[]);
         assert!(code == 2 && said.contains("write it as 'NODE.figure > 0.01'"), "{limit}: {said}");
     }
+    for (limit, exceeded) in [
+        ("body.rails.start-gap > 1e-4", "node \"body\", rail \"left side\": start-gap is 0.00019"),
+        ("max(rails.start-gap) > 1e-4", "node \"body\": max of rails.start-gap is 0.00019"),
+        ("vest.holes > 1", "node \"vest\": holes is 2; it fails 'vest.holes > 1'"),
+    ] {
+        let (code, _, said) = run(&[limit], &[]);
+        assert!(code == 1 && said.contains(exceeded), "{limit}: {said}");
+    }
+    let (code, _, said) = run(&["vest.faults > 0", "folded-faces > 0", "warnings"], &[]);
+    assert_eq!((code, said.as_str()), (0, ""));
     let (code, out, _) = run(&["largest-gap > 1e-6"], &["--json"]);
     let said: serde_json::Value = serde_json::from_str(&out).unwrap();
     assert!(code == 1 && said["ok"] == false && said["errors"].as_array().unwrap().len() == 1, "{out}");

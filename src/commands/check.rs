@@ -61,7 +61,8 @@ fn check_one(catalogue: &Catalogue, path: &Path, evaluate: bool) -> bool {
     said.iter().for_each(console::remark);
     errors += said.len();
     if evaluate {
-        let evaluation = Evaluator::default().evaluate(catalogue, graph, &Request::nodes(&all).base(file.base()));
+        let request = Request::nodes(&all).base(file.base()).examine();
+        let evaluation = Evaluator::default().evaluate(catalogue, graph, &request);
         for (id, outcome) in evaluation.outcomes() {
             match &outcome.state {
                 OutcomeState::Failed(failure) => {

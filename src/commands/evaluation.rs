@@ -43,6 +43,8 @@ pub(super) struct Evaluated {
     pub(super) failures: Vec<String>,
     /// What deserves a look, in the file or in a node's result.
     pub(super) warnings: Vec<String>,
+    /// Those of them that are about the file.
+    pub(super) file_warnings: Vec<String>,
 }
 
 /// A graph that is ready to be evaluated.
@@ -51,7 +53,9 @@ pub(super) struct Opened {
     /// Its results that were asked for.
     pub(super) targets: Vec<NodeId>,
     /// What deserves a look in the file.
-    warnings: Vec<String>,
+    pub(super) warnings: Vec<String>,
+    /// Whether to measure as well what is measured on request only.
+    pub(super) examine: bool,
 }
 
 /// Of which nodes the values are kept for a closer look.
@@ -93,7 +97,7 @@ pub(super) fn open(
         .flat_map(|k| k.outputs().iter().map(|o| o.wire).collect::<Vec<_>>())
         .collect();
     suits(&types)?;
-    Ok(Opened { file, targets, warnings })
+    Ok(Opened { file, targets, warnings, examine: false })
 }
 
 /// Evaluates; what fails in a node is in [`Evaluated::failures`], what is wrong with graph or arguments is an error.
@@ -119,38 +123,47 @@ impl Opened {
         keep: Keep,
         cancel: &CancelToken,
     ) -> Evaluated {
-        let Self { file, targets, mut warnings } = self;
+        let Self { file, targets, mut warnings, examine } = self;
+        let file_warnings = warnings.clone();
         let graph = &file.loaded.graph;
         let progress = Progress::new(!quiet);
         let asked = if keep == Keep::Everything { graph.upstream(&targets) } else { targets.clone() };
         let request = Request::nodes(&asked).events(&progress).base(file.base()).cancel(cancel);
+        let request = if examine { request.examine() } else { request };
         let evaluation = evaluator.evaluate(catalogue, graph, &request);
         progress.finish();
-        let mut failures = Vec::new();
-        for (id, outcome) in evaluation.outcomes() {
-            match &outcome.state {
-                OutcomeState::Failed(failure) => {
-                    failures.push(file.about(Severity::Error, id, failure.port.as_deref(), &failure.message));
-                }
-                OutcomeState::Waiting(on) if targets.contains(&id) => {
-                    failures.push(file.about(
-                        Severity::Error,
-                        id,
-                        None,
-                        &format!("not made, because \"{}\" failed", on.join("\", \"")),
-                    ));
-                }
-                OutcomeState::Done { report, .. } => {
-                    warnings.extend(report.warnings.iter().map(|w| file.about(Severity::Warning, id, None, w)));
-                }
-                _ => {}
-            }
-        }
+        let (failures, of_nodes) = messages(&file, &targets, &evaluation);
+        warnings.extend(of_nodes);
         if !quiet {
             warnings.iter().for_each(console::remark);
         }
-        Evaluated { file, targets, evaluation, failures, warnings }
+        Evaluated { file, targets, evaluation, failures, warnings, file_warnings }
     }
+}
+
+/// What an evaluation failed at, and what deserves a look in its results: one message each.
+pub(super) fn messages(file: &GraphFile, targets: &[NodeId], evaluation: &Evaluation) -> (Vec<String>, Vec<String>) {
+    let (mut failures, mut warnings) = (Vec::new(), Vec::new());
+    for (id, outcome) in evaluation.outcomes() {
+        match &outcome.state {
+            OutcomeState::Failed(failure) => {
+                failures.push(file.about(Severity::Error, id, failure.port.as_deref(), &failure.message));
+            }
+            OutcomeState::Waiting(on) if targets.contains(&id) => {
+                failures.push(file.about(
+                    Severity::Error,
+                    id,
+                    None,
+                    &format!("not made, because \"{}\" failed", on.join("\", \"")),
+                ));
+            }
+            OutcomeState::Done { report, .. } => {
+                warnings.extend(report.warnings.iter().map(|w| file.about(Severity::Warning, id, None, w)));
+            }
+            _ => {}
+        }
+    }
+    (failures, warnings)
 }
 
 fn targets(file: &GraphFile, wanted: &[String]) -> Result<Vec<NodeId>, Vec<String>> {

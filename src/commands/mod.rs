@@ -9,16 +9,19 @@ mod evaluation;
 mod evaluation_order;
 mod fail_if;
 pub mod fmt;
+pub mod freeze;
 mod graph_file;
 mod hashes;
 pub mod nodes;
 mod overrides;
 mod progress_bar;
 pub mod render;
+mod report_text;
 mod results;
 pub mod run;
 pub mod verify;
 mod watch;
+pub mod wedge;
 mod write;
 
 /// How a command ended; the number is the exit code.
@@ -27,7 +30,7 @@ mod write;
 pub enum Ended {
     /// Everything was done.
     Done = 0,
-    /// A node failed, a limit was exceeded, or what was compared differs.
+    /// A node failed, a limit was exceeded, what was compared differs, or a wedge was stopped.
     Failed = 1,
     /// The graph or the arguments are wrong.
     Wrong = 2,

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use maquette_graph::{Catalogue, InputSpec, Literal, NodeKind, Range, Unit};
+use maquette_graph::{Catalogue, InputSpec, Literal, NodeKind, Range, TableSpec, Unit};
 use serde_json::{Value as Json, json};
 
 use super::{Ended, console};
@@ -114,7 +114,28 @@ fn kind_markdown(kind: &NodeKind) -> String {
         let _ = writeln!(text, "| `{}` | {} | {} |", output.name, output.wire, output.description);
     }
     text.push('\n');
+    let measured = measured(kind);
+    if !measured.is_empty() {
+        text.push_str("| measured | unit | what it says |\n|---|---|---|\n");
+        for (name, unit, description) in measured {
+            let _ = writeln!(text, "| `{name}` | {unit} | {description} |");
+        }
+        text.push('\n');
+    }
     text
+}
+
+/// Figures, and tables with their columns: name, unit, description.
+fn measured(kind: &NodeKind) -> Vec<(String, String, String)> {
+    let figures = kind.figures().iter().map(|f| (f.name.clone(), f.unit.to_string(), f.description.clone()));
+    let mut measured: Vec<_> = figures.collect();
+    for table in kind.tables() {
+        for (index, column) in table.columns.iter().enumerate() {
+            let description = if index == 0 { table.description.clone() } else { String::new() };
+            measured.push((format!("{}.{}", table.name, column.name), column.unit.to_string(), description));
+        }
+    }
+    measured
 }
 
 fn kind_text(kind: &NodeKind) -> String {
@@ -135,6 +156,15 @@ fn kind_text(kind: &NodeKind) -> String {
     text.push_str("outputs\n");
     for output in kind.outputs() {
         let _ = writeln!(text, "  {} ({})\n      {}", output.name, output.wire, output.description);
+    }
+    let measured = measured(kind);
+    if !measured.is_empty() {
+        text.push_str("measured\n");
+    }
+    for (name, unit, description) in measured {
+        let unit = if unit.is_empty() { unit } else { format!(" ({unit})") };
+        let description = if description.is_empty() { description } else { format!("\n      {description}") };
+        let _ = writeln!(text, "  {name}{unit}{description}");
     }
     text
 }
@@ -202,6 +232,19 @@ fn kind_json(kind: &NodeKind) -> Json {
         .iter()
         .map(|output| json!({ "name": output.name, "type": output.wire.name(), "description": output.description }))
         .collect();
+    let figures: Vec<Json> = kind
+        .figures()
+        .iter()
+        .map(|f| json!({ "name": f.name, "unit": f.unit.to_string(), "description": f.description }))
+        .collect();
+    let columns = |table: &TableSpec| -> Vec<Json> {
+        table.columns.iter().map(|c| json!({ "name": c.name, "unit": c.unit.to_string() })).collect()
+    };
+    let tables: Vec<Json> = kind
+        .tables()
+        .iter()
+        .map(|t| json!({ "name": t.name, "columns": columns(t), "description": t.description }))
+        .collect();
     json!({
         "name": kind.name(),
         "version": kind.version(),
@@ -211,6 +254,8 @@ fn kind_json(kind: &NodeKind) -> Json {
         "result": kind.gives_result(),
         "inputs": inputs,
         "outputs": outputs,
+        "figures": figures,
+        "tables": tables,
     })
 }
 

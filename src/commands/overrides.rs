@@ -1,7 +1,18 @@
 //! `--set NODE.PORT=VALUE`: values from the command line, read by the type of their port.
 
 use maquette_graph::file::parse_literal;
-use maquette_graph::{Graph, Literal, LiteralKind};
+use maquette_graph::{Graph, Literal, LiteralKind, NodeId};
+
+/// Where a value that is given on the command line goes.
+#[derive(Clone, Debug)]
+pub(super) struct Place {
+    node: NodeId,
+    port: String,
+    /// What kind of value it takes.
+    pub(super) wanted: LiteralKind,
+    /// The options of a choice.
+    pub(super) options: Vec<String>,
+}
 
 /// Puts a value given on the command line into the graph.
 ///
@@ -10,20 +21,44 @@ use maquette_graph::{Graph, Literal, LiteralKind};
 pub(super) fn apply(graph: &mut Graph, assignment: &str) -> Result<(), String> {
     let fail = |reason: String| format!("--set {assignment}: {reason}");
     let (address, value) = assignment.split_once('=').ok_or_else(|| fail("write it as NODE.PORT=VALUE".to_owned()))?;
-    let (name, port) = address.rsplit_once('.').ok_or_else(|| fail("write it as NODE.PORT=VALUE".to_owned()))?;
-    let node = graph.find(name).ok_or_else(|| {
-        let hint = graph.suggest(name).map(|s| format!("; did you mean \"{s}\"?")).unwrap_or_default();
-        fail(format!("no node is named \"{name}\"{hint}"))
-    })?;
-    let kind = graph.node(node).and_then(|n| n.kind().cloned());
-    let spec = kind.as_ref().and_then(|k| k.find_input(port)).ok_or_else(|| {
-        let known = kind.iter().flat_map(|k| k.inputs()).map(|i| i.name.as_str()).collect::<Vec<_>>().join(", ");
-        fail(format!("node \"{name}\" has no input \"{port}\"; it has {known}"))
-    })?;
-    let wanted = LiteralKind::of_wire(spec.wire)
-        .ok_or_else(|| fail(format!("the input takes {} from a link; a value can't be given", spec.wire)))?;
-    let literal = literal(wanted, value).map_err(fail)?;
-    graph.set(node, port, literal).map_err(|error| fail(error.to_string()))
+    let place = Place::find(graph, address).map_err(fail)?;
+    let literal = place.read(value).map_err(fail)?;
+    place.set(graph, literal).map_err(fail)
+}
+
+impl Place {
+    /// The place of an address, `NODE.PORT`; why there is none is an error.
+    pub(super) fn find(graph: &Graph, address: &str) -> Result<Self, String> {
+        let (name, port) = address.rsplit_once('.').ok_or_else(|| "write it as NODE.PORT=VALUE".to_owned())?;
+        let node = graph.find(name).ok_or_else(|| {
+            let hint = graph.suggest(name).map(|s| format!("; did you mean \"{s}\"?")).unwrap_or_default();
+            format!("no node is named \"{name}\"{hint}")
+        })?;
+        let kind = graph.node(node).and_then(|n| n.kind().cloned());
+        let spec = kind.as_ref().and_then(|k| k.find_input(port)).ok_or_else(|| {
+            let known = kind.iter().flat_map(|k| k.inputs()).map(|i| i.name.as_str()).collect::<Vec<_>>().join(", ");
+            format!("node \"{name}\" has no input \"{port}\"; it has {known}")
+        })?;
+        let wanted = LiteralKind::of_wire(spec.wire)
+            .ok_or_else(|| format!("the input takes {} from a link; a value can't be given", spec.wire))?;
+        let options = spec.options.iter().map(|option| option.name.clone()).collect();
+        Ok(Self { node, port: port.to_owned(), wanted, options })
+    }
+
+    /// The nodes that take this value as it is.
+    pub(super) fn nodes(&self) -> Vec<NodeId> {
+        vec![self.node]
+    }
+
+    /// A value as it is written on the command line.
+    pub(super) fn read(&self, value: &str) -> Result<Literal, String> {
+        literal(self.wanted, value)
+    }
+
+    /// Puts a value there.
+    pub(super) fn set(&self, graph: &mut Graph, literal: Literal) -> Result<(), String> {
+        graph.set(self.node, &self.port, literal).map_err(|error| error.to_string())
+    }
 }
 
 fn literal(wanted: LiteralKind, value: &str) -> Result<Literal, String> {

@@ -56,6 +56,7 @@ impl Events for Progress {
             EventKind::Progress(fraction) => self.change(|running| {
                 running.insert(event.node, format!("{} {:.0} %", event.name, fraction * 100.0));
             }),
+            EventKind::Examined(_) => {}
             EventKind::Hit
             | EventKind::Finished(_)
             | EventKind::Failed(_)
@@ -67,5 +68,39 @@ impl Events for Progress {
                 self.bar.inc(1);
             }
         }
+    }
+}
+
+/// Counts the variants of a wedge on stderr; silent where that is no terminal.
+pub(super) struct Variants(ProgressBar);
+
+impl Variants {
+    pub(super) fn new(wanted: bool, count: usize) -> Self {
+        let shown = wanted && std::io::stderr().is_terminal();
+        let bar = if shown { ProgressBar::new(count as u64) } else { ProgressBar::hidden() };
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} variants, {eta} left  {wide_msg}") {
+            bar.set_style(style);
+        }
+        Self(bar)
+    }
+
+    /// Shows what is in work.
+    pub(super) fn begin(&self, what: impl FnOnce() -> String) {
+        if !self.0.is_hidden() {
+            self.0.set_message(what());
+        }
+    }
+
+    pub(super) fn advance(&self) {
+        self.0.inc(1);
+    }
+
+    /// Says something while the bar is there.
+    pub(super) fn aside(&self, say: impl FnOnce()) {
+        self.0.suspend(say);
+    }
+
+    pub(super) fn finish(&self) {
+        self.0.finish_and_clear();
     }
 }

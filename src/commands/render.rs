@@ -28,15 +28,28 @@ pub struct Arguments {
     curves: bool,
 }
 
+/// The views of a picture, as they are named on the command line.
 #[derive(Clone, Copy, clap::ValueEnum)]
-enum ViewName {
+pub(super) enum ViewName {
     Front,
     Side,
     Top,
     ThreeQuarter,
 }
 
-fn size(text: &str) -> Result<(u32, u32), String> {
+impl ViewName {
+    pub(super) fn view(self) -> View {
+        match self {
+            Self::Front => View::Front,
+            Self::Side => View::Side,
+            Self::Top => View::Top,
+            Self::ThreeQuarter => View::ThreeQuarter,
+        }
+    }
+}
+
+/// Reads `WIDTHxHEIGHT`, pixels.
+pub(super) fn size(text: &str) -> Result<(u32, u32), String> {
     let (width, height) = text.split_once('x').ok_or("write it as WIDTHxHEIGHT, such as 1280x960")?;
     match (width.parse(), height.parse()) {
         (Ok(width), Ok(height)) => Ok((width, height)),
@@ -67,12 +80,7 @@ pub fn render(arguments: &Arguments) -> Ended {
         return Ended::Failed;
     }
     let (width, height) = arguments.size;
-    let view = match arguments.view {
-        ViewName::Front => View::Front,
-        ViewName::Side => View::Side,
-        ViewName::Top => View::Top,
-        ViewName::ThreeQuarter => View::ThreeQuarter,
-    };
+    let view = arguments.view.view();
     let scene = results::scene(&evaluated.evaluation, &evaluated.targets);
     // Where there are only curves, a picture without them would be empty.
     let curves = arguments.curves || scene.meshes.is_empty();

@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use glam::DVec3;
 use maquette_geometry::file_format::FileFormat;
-use maquette_geometry::mesh::{Mesh, check};
 use maquette_geometry::scene::Scene;
 use maquette_graph::{CancelToken, Catalogue, Evaluator, Outcome, OutcomeState};
 use serde_json::{Value as Json, json};
@@ -13,7 +12,7 @@ use serde_json::{Value as Json, json};
 use super::evaluation::{Evaluated, EvaluationArguments, Keep, Opened, evaluator, open};
 use super::fail_if::{self, Limit};
 use super::hashes::{self, Hashes};
-use super::{Ended, console, results, watch, write};
+use super::{Ended, console, report_text, results, watch, write};
 
 /// Evaluate a graph and write its results.
 #[derive(clap::Args)]
@@ -23,14 +22,18 @@ pub struct Arguments {
     /// Write the results to this file: .glb, .gltf, .obj, .ply (meshes), .json (curves); may be given several times.
     #[arg(short = 'o', long = "write", value_name = "FILE")]
     files: Vec<PathBuf>,
+    /// Make the folders of the files that are written where they are not there.
+    #[arg(long)]
+    create_folders: bool,
     /// Say what was done as JSON on stdout.
     #[arg(long)]
     json: bool,
-    /// Say what the nodes noted and measured.
+    /// Say what the nodes noted and measured, and look for faults in the meshes of the results.
     #[arg(long)]
     report: bool,
-    /// Fail where a figure that a node measured is beyond this limit: 'NODE.figure > 0.01', 'figure <= 3' for any node;
-    /// may be given several times. --report lists the figures.
+    /// Fail where what a node measured is beyond this limit: 'NODE.figure > 0.01', 'NODE.table.column > 0.01' for each
+    /// row, 'max(table.column) > 1' (or min, mean, sum, count); without NODE, any node's. 'warnings' fails on any warning.
+    /// May be given several times. --report and maquette nodes KIND list what is measured.
     #[arg(long, value_name = "LIMIT")]
     fail_if: Vec<String>,
     /// Write the content hash of each node's outputs to this file (.ron), or to stdout; see maquette verify.
@@ -104,7 +107,10 @@ impl<'a> Runner<'a> {
     pub(super) fn open(&self) -> Result<Opened, Vec<String>> {
         let files = self.arguments.files.iter().map(PathBuf::as_path);
         let files: Vec<_> = files.zip(self.formats.iter().copied()).collect();
-        open(&self.catalogue, &self.arguments.evaluation, |types| write::suits(&files, types))
+        let mut opened = open(&self.catalogue, &self.arguments.evaluation, |types| write::suits(&files, types))?;
+        let unknown = fail_if::refuse_unknown(&self.limits, &opened.file.loaded.graph, &opened.targets);
+        opened.examine = self.arguments.report || !self.limits.is_empty();
+        if unknown.is_empty() { Ok(opened) } else { Err(unknown) }
     }
 
     /// Says what is wrong with the graph.
@@ -126,7 +132,7 @@ impl<'a> Runner<'a> {
         if self.cancel.is_cancelled() {
             return Ended::Done;
         }
-        let verdict = fail_if::judge(&self.limits, &evaluated.evaluation);
+        let verdict = fail_if::judge(&self.limits, &evaluated.evaluation, &evaluated.file_warnings);
         if !verdict.unknown.is_empty() {
             return self.refuse(&verdict.unknown);
         }
@@ -148,7 +154,8 @@ impl<'a> Runner<'a> {
                 }
             };
             for (path, format) in arguments.files.iter().zip(&self.formats) {
-                keep(write::scene(path, *format, &scene));
+                let folder = if arguments.create_folders { write::make_folder_of(path) } else { Ok(()) };
+                keep(folder.and_then(|()| write::scene(path, *format, &scene)));
             }
             if let Some(path) = arguments.hashes.as_deref().filter(|path| *path != Path::new("-")) {
                 let text = Hashes::of(&evaluated).to_text();
@@ -216,19 +223,12 @@ fn as_text(arguments: &Arguments, evaluated: &Evaluated, scene: &Scene, written:
         if let OutcomeState::Done { report, .. } = &outcome.state
             && arguments.report
         {
-            report.notes.iter().for_each(|note| console::say(format!("      {note}")));
-            for figure in &report.figures {
-                console::say(format!("      {}: {} {}", figure.name, digits(figure.value), figure.unit));
-            }
+            report_text::lines(report).iter().for_each(|line| console::say(format!("      {line}")));
         }
     }
     for item in &scene.meshes {
         let (vertices, faces) = (item.mesh.positions().len(), item.mesh.polygon_count());
         console::say(format!("result {}: {vertices} vertices, {faces} faces", item.name));
-        if arguments.report {
-            let found = check(&item.mesh);
-            console::say(format!("      {found}; largest fold {:.1} degrees", found.largest_fold_degrees));
-        }
     }
     for item in &scene.curves {
         let points: usize = item.curves.iter().map(|c| c.points().len()).sum();
@@ -237,18 +237,6 @@ fn as_text(arguments: &Arguments, evaluated: &Evaluated, scene: &Scene, written:
     for (path, bytes) in written {
         console::say(format!("wrote {} ({bytes} bytes)", path.display()));
     }
-}
-
-/// Four digits are enough to read; `--json` has them all.
-fn digits(value: f64) -> String {
-    if value.abs() < 1e-12 {
-        return "0".to_owned();
-    }
-    if (1e-3..1e6).contains(&value.abs()) {
-        let decimals = (3.0 - value.abs().log10().floor()).max(0.0) as usize;
-        return format!("{value:.decimals$}");
-    }
-    format!("{value:.3e}")
 }
 
 fn state(outcome: &Outcome) -> String {
@@ -281,7 +269,6 @@ fn as_json(
             "vertices": item.mesh.positions().len(),
             "faces": item.mesh.polygon_count(),
             "bounds": bounds(item.mesh.positions()),
-            "check": arguments.report.then(|| check_json(&item.mesh)),
         })
     });
     let curves = scene.curves.iter().map(|item| {
@@ -311,19 +298,6 @@ fn as_json(
     })
 }
 
-/// What `--report` says of a mesh, as data.
-fn check_json(mesh: &Mesh) -> Json {
-    let found = check(mesh);
-    json!({
-        "sound": found.is_sound(),
-        "closed": found.closed,
-        "shells": found.shells,
-        "boundary_loops": found.boundary_loops,
-        "normals_outward": found.normals_outward,
-        "largest_fold_degrees": found.largest_fold_degrees,
-    })
-}
-
 fn node_json(outcome: &Outcome) -> Json {
     let mut node = json!({
         "name": outcome.name,
@@ -333,9 +307,9 @@ fn node_json(outcome: &Outcome) -> Json {
     });
     let details = match &outcome.state {
         OutcomeState::Done { report, .. } => {
-            let figures: Vec<Json> =
-                report.figures.iter().map(|f| json!({ "name": f.name, "value": f.value, "unit": f.unit })).collect();
-            json!({ "state": "done", "notes": report.notes, "warnings": report.warnings, "figures": figures })
+            let mut details = report_text::as_json(report);
+            details["state"] = json!("done");
+            details
         }
         OutcomeState::Failed(failure) => {
             json!({ "state": "failed", "error": { "port": failure.port, "message": failure.message } })

@@ -87,7 +87,8 @@ fn overwritten(runner: &Runner<'_>, graph: &Path, files: &[PathBuf]) -> Option<S
     Some(format!("error: {}: the graph reads this file; with --watch, write to another one", written.display()))
 }
 
-fn stop_on_signals(cancel: &CancelToken) -> Result<(), ctrlc::Error> {
+/// Stops what this token is given to on Ctrl-C and on signals that end a program; may be asked for once in a process.
+pub(super) fn stop_on_signals(cancel: &CancelToken) -> Result<(), ctrlc::Error> {
     let cancel = cancel.clone();
     ctrlc::set_handler(move || cancel.cancel())
 }

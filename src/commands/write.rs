@@ -40,6 +40,19 @@ pub(super) fn suits(files: &[(&Path, FileFormat)], types: &[WireType]) -> Result
 
 /// Writes a scene in the format of the file's extension; returns the files written, with their bytes.
 pub(super) fn scene(path: &Path, format: FileFormat, scene: &Scene) -> Result<Vec<(PathBuf, usize)>, String> {
+    // Everything is made before anything is written.
+    let files = encoded(path, format, scene)?.into_iter();
+    files.map(|(path, bytes)| whole(&path, &bytes).map(|()| (path, bytes.len()))).collect()
+}
+
+/// Makes the folder that a file goes into, where it is not there.
+pub(super) fn make_folder_of(path: &Path) -> Result<(), String> {
+    let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) else { return Ok(()) };
+    std::fs::create_dir_all(folder).map_err(|error| format!("{}: the folder can't be made: {error}", folder.display()))
+}
+
+/// The files that a scene makes, and what goes into them.
+pub(super) fn encoded(path: &Path, format: FileFormat, scene: &Scene) -> Result<Vec<(PathBuf, Vec<u8>)>, String> {
     let fail = |error: String| format!("{}: {error}", path.display());
     let mut files = Vec::new();
     match format {
@@ -60,8 +73,7 @@ pub(super) fn scene(path: &Path, format: FileFormat, scene: &Scene) -> Result<Ve
         }
         FileFormat::Svg => return Err(fail("SVG is read, not written".to_owned())),
     }
-    // Everything is made before anything is written.
-    files.into_iter().map(|(path, bytes)| whole(&path, &bytes).map(|()| (path, bytes.len()))).collect()
+    Ok(files)
 }
 
 /// Replaces a file that is there. One that is protected against writing is left as it is.

@@ -6,6 +6,7 @@
 mod backdrop;
 mod camera;
 mod face;
+pub mod lettering;
 mod light;
 mod rasterizer;
 mod resolve;
@@ -18,13 +19,13 @@ mod tests;
 mod tile;
 mod wireframe;
 
-use glam::{DVec2, Vec3};
+use glam::{DVec2, DVec3, Vec3};
 use image::ImageEncoder;
 use image::codecs::png::PngEncoder;
 use maquette_geometry::scene::Scene;
 
-use camera::Camera;
 pub use camera::View;
+use camera::{Bounds, Camera};
 use shading::to_linear;
 use stroke::{Stroke, Strokes};
 use subject::Subject;
@@ -134,21 +135,42 @@ pub enum PngError {
 /// # Errors
 /// [`PictureError`] where there is nothing to draw, the size is out of range, or a point lies absurdly far away.
 pub fn draw(scene: &Scene, options: &PictureOptions) -> Result<Picture, PictureError> {
+    draw_framed(scene, options, &[])
+}
+
+/// Draws a scene as [`draw`] does, framed so that a box is inside as well: scenes drawn with one box that holds them all
+/// are seen by one camera, over one floor, and can be compared. `low` and `high` are its corners, metres.
+///
+/// # Errors
+/// As [`draw`].
+pub fn draw_within(scene: &Scene, options: &PictureOptions, [low, high]: [DVec3; 2]) -> Result<Picture, PictureError> {
+    let side = |bit: usize, low: f64, high: f64| if bit == 0 { low } else { high };
+    let corners: Vec<DVec3> = (0..8)
+        .map(|i| DVec3::new(side(i & 1, low.x, high.x), side(i & 2, low.y, high.y), side(i & 4, low.z, high.z)))
+        .collect();
+    draw_framed(scene, options, &corners)
+}
+
+fn draw_framed(scene: &Scene, options: &PictureOptions, corners: &[DVec3]) -> Result<Picture, PictureError> {
     let PictureOptions { view, width, height, wireframe, curves } = *options;
     if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) {
         return Err(PictureError::Size { width, height });
     }
-    let distance = subject::points(scene, curves).fold(0.0, |most: f64, p| most.max(p.abs().max_element()));
+    let framed = || subject::points(scene, curves).chain(corners.iter().copied());
+    let distance = framed().fold(0.0, |most: f64, p| most.max(p.abs().max_element()));
     if distance > REACH {
         return Err(PictureError::OutOfReach { distance });
     }
-    let subject = Subject::new(scene, curves).ok_or_else(|| PictureError::NothingToDraw {
+    let something = subject::points(scene, curves).next().is_some();
+    let bounds = if something { Bounds::of(framed()) } else { None };
+    let bounds = bounds.ok_or_else(|| PictureError::NothingToDraw {
         polygons: scene.meshes.iter().map(|item| item.mesh.polygon_count()).sum(),
         curves: scene.curves.iter().map(|item| item.curves.len()).sum(),
         curves_drawn: curves,
     })?;
+    let subject = Subject::within(scene, bounds);
     let size = DVec2::new(f64::from(width), f64::from(height));
-    let camera = Camera::framing(view, subject::points(scene, curves), &subject.bounds, size);
+    let camera = Camera::framing(view, framed(), &subject.bounds, size);
     let mut strokes = Strokes::new();
     if wireframe {
         wireframe::add_edges(&mut strokes, &subject, &camera);

@@ -47,8 +47,13 @@ pub(super) struct Model<'a> {
 impl<'a> Subject<'a> {
     /// Reads a scene; `None` where there is nothing in it to draw. Curves count for the bounds only where they are
     /// drawn.
+    #[cfg(test)]
     pub fn new(scene: &'a Scene, curves: bool) -> Option<Self> {
-        let bounds = Bounds::of(points(scene, curves))?;
+        Bounds::of(points(scene, curves)).map(|bounds| Self::within(scene, bounds))
+    }
+
+    /// Reads a scene that lies within `bounds`.
+    pub fn within(scene: &'a Scene, bounds: Bounds) -> Self {
         let models: Vec<Model> = scene.meshes.iter().map(Model::new).collect();
         let mut places = Vec::new();
         let mut shadows = Vec::new();
@@ -64,7 +69,7 @@ impl<'a> Subject<'a> {
         // A vertex that no polygon uses lies anywhere, and counts here alone.
         let low = places.iter().copied().reduce(Vec3::min).unwrap_or_default();
         let high = places.iter().copied().reduce(Vec3::max).unwrap_or_default();
-        Some(Self { bounds, models, places, extents: [low, high], triangles: shadows })
+        Self { bounds, models, places, extents: [low, high], triangles: shadows }
     }
 
     /// A point of the world in subject units.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use crate::freeze::{Freeze, Freezer};
 use crate::literal::{Choice, Colour, FilePath, Strokes, Vector};
 use crate::node_kind::NodeKind;
 use crate::port::exact_number;
@@ -32,6 +33,7 @@ pub struct Catalogue {
     kinds: BTreeMap<String, Arc<NodeKind>>,
     wires: BTreeMap<&'static str, WireType>,
     conversions: Vec<Conversion>,
+    freezers: BTreeMap<&'static str, (WireType, Freezer)>,
 }
 
 /// Why a declaration was refused.
@@ -45,7 +47,7 @@ pub enum CatalogueError {
     DuplicatePort {
         /// The kind.
         kind: String,
-        /// Inputs or outputs.
+        /// Inputs, outputs, or figures and tables.
         what: &'static str,
         /// The name.
         port: String,
@@ -77,7 +79,8 @@ impl Default for Catalogue {
 impl Catalogue {
     /// A catalogue with the built-in wire types and conversions and no kinds.
     pub fn new() -> Self {
-        let mut catalogue = Self { kinds: BTreeMap::new(), wires: BTreeMap::new(), conversions: Vec::new() };
+        let mut catalogue =
+            Self { kinds: BTreeMap::new(), wires: BTreeMap::new(), conversions: Vec::new(), freezers: BTreeMap::new() };
         let built_in = [
             WireType::of::<f64>(),
             WireType::of::<i64>(),
@@ -91,7 +94,30 @@ impl Catalogue {
         ];
         catalogue.wires.extend(built_in.map(|wire| (wire.name(), wire)));
         catalogue.add_conversion::<i64, f64>(|integer| exact_number(*integer));
+        catalogue.freezable::<f64>();
+        catalogue.freezable::<i64>();
+        catalogue.freezable::<bool>();
+        catalogue.freezable::<String>();
+        catalogue.freezable::<Choice>();
+        catalogue.freezable::<Vector>();
+        catalogue.freezable::<Colour>();
+        catalogue.freezable::<FilePath>();
+        catalogue.freezable::<Strokes>();
         catalogue
+    }
+
+    /// Lets golden files hold values of this type ([`crate::freeze`]).
+    pub fn freezable<T: Freeze>(&mut self) {
+        self.freezers.insert(T::NAME, (WireType::of::<T>(), Freezer::of::<T>()));
+    }
+
+    pub(crate) fn freezer(&self, wire: WireType) -> Option<Freezer> {
+        self.freezers.get(wire.name()).filter(|(known, _)| *known == wire).map(|(_, freezer)| *freezer)
+    }
+
+    /// Whether golden files can hold values of this type.
+    pub fn is_freezable(&self, wire: WireType) -> bool {
+        self.freezer(wire).is_some()
     }
 
     /// Adds a node kind, and the wire types of its ports.
@@ -105,7 +131,8 @@ impl Catalogue {
         }
         let inputs: Vec<_> = kind.inputs().iter().map(|i| &i.name).collect();
         let outputs: Vec<_> = kind.outputs().iter().map(|o| &o.name).collect();
-        for (what, ports) in [("inputs", inputs), ("outputs", outputs)] {
+        let measured = kind.figures().iter().map(|f| &f.name).chain(kind.tables().iter().map(|t| &t.name)).collect();
+        for (what, ports) in [("inputs", inputs), ("outputs", outputs), ("figures or tables", measured)] {
             if let Some(port) = ports.iter().enumerate().find_map(|(i, p)| ports[..i].contains(p).then_some(*p)) {
                 return Err(CatalogueError::DuplicatePort { kind: name, what, port: port.clone() });
             }
@@ -189,7 +216,7 @@ impl Catalogue {
 }
 
 /// The candidate most like a misspelt name, where one is alike enough to be meant.
-pub(crate) fn closest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+pub fn closest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     candidates
         .map(|candidate| (strsim::jaro_winkler(name, candidate), candidate))
         .filter(|(likeness, _)| *likeness > 0.75)

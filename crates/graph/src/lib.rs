@@ -34,7 +34,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Promises: results are the same on every run and for any number of threads, as long as node functions depend on
+//! The chapters of the [`guide`] say what to use when, and what is promised. In short: results are the same on every run and for any number of threads, as long as node functions depend on
 //! their inputs alone (and on the files they declare with [`NodeKind::reads_file`]); a failing or panicking node stops
 //! only what depends on it; nothing that was loaded from a file is dropped when it is saved again, but for comments
 //! and the layout of the text.
@@ -42,8 +42,12 @@
 mod catalogue;
 pub mod edit;
 mod evaluate;
+mod examination;
 pub mod file;
+pub mod freeze;
 mod graph;
+pub mod guide;
+pub mod harness;
 mod literal;
 mod node_kind;
 mod one_line;
@@ -54,16 +58,17 @@ mod topology;
 mod unknown_fields;
 mod value;
 
-pub use catalogue::{Catalogue, CatalogueError};
+pub use catalogue::{Catalogue, CatalogueError, closest};
 pub use edit::{Edit, EditError, History, NodeRecord};
 pub use evaluate::{
     CancelToken, Evaluation, Evaluator, EvaluatorOptions, Event, EventKind, EventLog, Events, Failure, Outcome,
     OutcomeState, Request,
 };
+pub use examination::Examination;
 pub use graph::{ConnectError, Graph, GraphError, Link, Node, NodeId, Source};
 pub use literal::{Choice, Colour, FilePath, Literal, LiteralKind, Stroke, StrokePoint, Strokes, Vector};
 pub use node_kind::{ChoiceInput, Choices, Input, NodeKind, OptionalInput, Output};
 pub use port::{InputSpec, OptionSpec, OutputSpec, Range, Unit};
 pub use ports::{AtPort, NodeError, Ports};
-pub use report::{Figure, Report};
+pub use report::{Cell, Column, Figure, FigureHandle, FigureSpec, Report, Table, TableHandle, TableSpec};
 pub use value::{ContentHash, ContentHasher, Value, Wire, WireType};

@@ -5,9 +5,11 @@ use std::marker::PhantomData;
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
+use crate::examination::Examination;
 use crate::literal::{Choice, Colour, FilePath, Literal, Strokes, Vector};
 use crate::port::{InputSpec, OptionSpec, OutputSpec, Range, Unit};
 use crate::ports::{NodeError, Ports};
+use crate::report::{Column, FigureHandle, FigureSpec, TableHandle, TableSpec};
 use crate::value::{Wire, WireType};
 
 /// Handle of an input that always has a value. Reading it as another type does not compile.
@@ -53,6 +55,7 @@ pub trait Choices: Copy + 'static {
 }
 
 type EvaluateFn = dyn Fn(&mut Ports<'_>) -> Result<(), NodeError> + Send + Sync;
+type ExamineFn = dyn Fn(&mut Examination<'_>) -> Result<(), NodeError> + Send + Sync;
 
 /// A kind of node: its ports and what it does.
 #[derive(Clone)]
@@ -66,6 +69,9 @@ pub struct NodeKind {
     outputs: Vec<OutputSpec>,
     is_result: bool,
     evaluate: Option<Arc<EvaluateFn>>,
+    examine: Option<Arc<ExamineFn>>,
+    figures: Vec<FigureSpec>,
+    tables: Vec<TableSpec>,
     /// Indices of the inputs whose files it reads.
     file_inputs: Vec<usize>,
 }
@@ -97,6 +103,9 @@ impl NodeKind {
             outputs: Vec::new(),
             is_result: false,
             evaluate: None,
+            examine: None,
+            figures: Vec::new(),
+            tables: Vec::new(),
             file_inputs: Vec::new(),
         }
     }
@@ -240,6 +249,28 @@ impl NodeKind {
         Output { index: self.outputs.len() - 1, wire: PhantomData }
     }
 
+    /// Declares a number that the node measures and reports with [`Ports::figure`], so that it is documented and can
+    /// gate a build. It need not be measured in every run.
+    pub fn figure(&mut self, name: &str, unit: Unit, description: &str) -> FigureHandle {
+        self.figures.push(FigureSpec { name: name.to_owned(), unit, description: description.to_owned() });
+        FigureHandle { index: self.figures.len() - 1 }
+    }
+
+    /// Declares a table that the node reports with [`Ports::table`]: names and units of its columns, the first of
+    /// which labels the rows.
+    pub fn table(&mut self, name: &str, columns: &[(&str, Unit)], description: &str) -> TableHandle {
+        let column = |(name, unit): &(&str, Unit)| Column { name: (*name).to_owned(), unit: *unit };
+        let columns = columns.iter().map(column).collect();
+        self.tables.push(TableSpec { name: name.to_owned(), columns, description: description.to_owned() });
+        TableHandle { index: self.tables.len() - 1 }
+    }
+
+    /// States how to measure what costs too much for every evaluation. It runs on the outputs, only for nodes asked
+    /// for with [`crate::Request::examine`], and is remembered with them. It must depend on the outputs alone.
+    pub fn examine(&mut self, run: impl Fn(&mut Examination<'_>) -> Result<(), NodeError> + Send + Sync + 'static) {
+        self.examine = Some(Arc::new(run));
+    }
+
     /// States what the node does. The function must depend on its inputs alone (and on the files that
     /// [`NodeKind::reads_file`] declares), and write every output.
     pub fn evaluate(&mut self, run: impl Fn(&mut Ports<'_>) -> Result<(), NodeError> + Send + Sync + 'static) {
@@ -294,6 +325,16 @@ impl NodeKind {
         &self.outputs
     }
 
+    /// The figures it measures, in order.
+    pub fn figures(&self) -> &[FigureSpec] {
+        &self.figures
+    }
+
+    /// The tables it measures, in order.
+    pub fn tables(&self) -> &[TableSpec] {
+        &self.tables
+    }
+
     /// The input of that name.
     pub fn find_input(&self, name: &str) -> Option<&InputSpec> {
         self.inputs.iter().find(|i| i.name == name)
@@ -306,6 +347,20 @@ impl NodeKind {
 
     pub(crate) fn evaluate_fn(&self) -> Option<&EvaluateFn> {
         self.evaluate.as_deref()
+    }
+
+    pub(crate) fn examine_fn(&self) -> Option<&ExamineFn> {
+        self.examine.as_deref()
+    }
+
+    /// The same kind doing something else: for watching it run. Never taken for an equal kind.
+    pub(crate) fn doing(
+        &self,
+        run: impl Fn(&Self, &mut Ports<'_>) -> Result<(), NodeError> + Send + Sync + 'static,
+    ) -> Self {
+        let original = self.clone();
+        let evaluate: Arc<EvaluateFn> = Arc::new(move |ports: &mut Ports<'_>| run(&original, ports));
+        Self { evaluate: Some(evaluate), version: u32::MAX, ..self.clone() }
     }
 
     pub(crate) fn file_inputs(&self) -> &[usize] {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::literal::{Choice, FilePath};
 use crate::node_kind::{ChoiceInput, Choices, Input, NodeKind, OptionalInput, Output};
-use crate::report::{Figure, Report};
+use crate::report::{Cell, FigureHandle, Report, ReportBuilder, TableHandle};
 use crate::value::{ContentHash, Value, Wire};
 
 /// Why a node did not give a result. Any error converts into it with `?`.
@@ -85,7 +85,7 @@ pub struct Ports<'a> {
     /// The content of the files that the kind reads, with the indices of their inputs.
     files: &'a [(usize, Arc<[u8]>)],
     outputs: Vec<Option<Value>>,
-    report: Report,
+    report: ReportBuilder<'a>,
     base: &'a Path,
     /// Reports progress; `false` says stop.
     progress: &'a (dyn Fn(f64) -> bool + Sync),
@@ -100,7 +100,7 @@ impl<'a> Ports<'a> {
         progress: &'a (dyn Fn(f64) -> bool + Sync),
     ) -> Self {
         let outputs = vec![None; kind.outputs().len()];
-        Self { kind, inputs, files, outputs, report: Report::default(), base, progress }
+        Self { kind, inputs, files, outputs, report: ReportBuilder::new(kind), base, progress }
     }
 
     fn get<T: Wire>(&self, index: usize) -> Option<&'a T> {
@@ -203,17 +203,22 @@ impl<'a> Ports<'a> {
 
     /// Says what the node decided, in plain words.
     pub fn note(&mut self, note: impl Display) {
-        self.report.notes.push(note.to_string());
+        self.report.note(note);
     }
 
     /// Says what will probably disappoint the artist, and what to do about it.
     pub fn warn(&mut self, warning: impl Display) {
-        self.report.warnings.push(warning.to_string());
+        self.report.warn(warning);
     }
 
-    /// Reports a measured number, such as a largest gap in `m`.
-    pub fn figure(&mut self, name: &str, value: f64, unit: &'static str) {
-        self.report.figures.push(Figure { name: name.to_owned(), value, unit });
+    /// Reports a number that [`NodeKind::figure`] declares, in the unit declared.
+    pub fn figure(&mut self, figure: FigureHandle, value: f64) {
+        self.report.figure(figure, value);
+    }
+
+    /// Reports a table that [`NodeKind::table`] declares: rows with a cell a column.
+    pub fn table(&mut self, table: TableHandle, rows: Vec<Vec<Cell>>) {
+        self.report.table(table, rows);
     }
 
     /// Tells how much is done, 0 to 1, and asks whether to go on.
@@ -229,6 +234,18 @@ impl<'a> Ports<'a> {
     pub fn progress_callback(&self) -> impl Fn(f64) -> bool + use<'a> {
         let progress = self.progress;
         move |fraction| progress(fraction)
+    }
+
+    pub(crate) fn inputs(&self) -> &'a [Option<Value>] {
+        self.inputs
+    }
+
+    pub(crate) fn files(&self) -> &'a [(usize, Arc<[u8]>)] {
+        self.files
+    }
+
+    pub(crate) fn outputs(&self) -> &[Option<Value>] {
+        &self.outputs
     }
 
     pub(crate) fn finish(self) -> Result<(Vec<Value>, Report), NodeError> {
@@ -251,10 +268,12 @@ impl<'a> Ports<'a> {
                 Some(value) => values.push(value),
             }
         }
-        if missing.is_empty() {
-            Ok((values, self.report))
-        } else {
-            mistake(format!("did not write its output {}", missing.join(", ")))
+        if !missing.is_empty() {
+            return mistake(format!("did not write its output {}", missing.join(", ")));
+        }
+        match self.report.finish() {
+            Ok(report) => Ok((values, report)),
+            Err(what) => mistake(what),
         }
     }
 }

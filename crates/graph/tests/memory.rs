@@ -153,3 +153,32 @@ fn a_block_handed_on_unchanged_is_not_copied() {
     assert_eq!((evaluation.run_count(), evaluation.hit_count()), (2, 9));
     assert_eq!(living.most.load(Ordering::SeqCst), 1);
 }
+
+#[test]
+fn a_cancelled_evaluation_gives_back_what_was_half_done() {
+    for threads in [1, 2] {
+        let (mut rig, living) = blocks(4, usize::MAX, threads);
+        let cancel = maquette_graph::CancelToken::new();
+        let (token, of_stopped) = (cancel.clone(), living.clone());
+        rig.register(kind("stopped-block", |node| {
+            let block = node.input::<Block>("block", "The block before.");
+            let out = node.output::<Block>("block", "Another block, and one that is thrown away.");
+            node.evaluate(move |ports| {
+                let tag = Block::new(7.0, &of_stopped);
+                let _ = ports.read(block);
+                ports.write(out, tag);
+                token.cancel();
+                ports.progress(0.5)
+            });
+        }));
+        rig.add("stopped-block", "stopped");
+        rig.link("b3.block", "stopped.block");
+        let stopped = rig.id("stopped");
+        let evaluation = rig.request(maquette_graph::Request::nodes(&[stopped]).cancel(&cancel));
+        assert!(evaluation.cancelled);
+        drop(evaluation);
+        assert_eq!(living.now.load(Ordering::SeqCst), 4, "what was finished is remembered, the half done is gone");
+        rig.evaluator.forget();
+        assert_eq!(living.now.load(Ordering::SeqCst), 0);
+    }
+}

@@ -4,6 +4,7 @@
 mod affine;
 mod curve;
 mod deform;
+mod frozen;
 mod generate;
 mod input;
 mod mesh;
@@ -53,6 +54,7 @@ pub fn catalogue() -> Result<Catalogue, CatalogueError> {
         [curve] => Ok(wire::Curve(curve.clone())),
         several => Err(format!("{} curves arrive where one is wanted: choose it with a `pick` node", several.len())),
     })?;
+    frozen::register(&mut catalogue);
     for kind in kinds() {
         catalogue.register(kind)?;
     }

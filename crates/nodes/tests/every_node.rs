@@ -184,6 +184,13 @@ fn every_kind_and_port_is_described_and_named_in_kebab_case() {
                 assert!(kebab(&option.name) && !option.description.is_empty(), "{}.{}", kind.name(), input.name);
             }
         }
+        for figure in kind.figures() {
+            assert!(kebab(&figure.name) && sentence(&figure.description), "{}.{}", kind.name(), figure.name);
+        }
+        for table in kind.tables() {
+            assert!(kebab(&table.name) && sentence(&table.description), "{}.{}", kind.name(), table.name);
+            assert!(table.columns.iter().all(|column| kebab(&column.name)), "{}.{}", kind.name(), table.name);
+        }
         for output in kind.outputs() {
             assert!(kebab(&output.name) && sentence(&output.description), "{}.{}", kind.name(), output.name);
         }

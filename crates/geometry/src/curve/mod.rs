@@ -8,13 +8,15 @@ mod resample;
 mod smoothing;
 mod spline;
 mod spline_length;
+mod spread;
 
 pub use arc_length::ArcLength;
 pub use closest::{Closest, closest};
-pub use correspondence::{AxisSource, Decision, SortError, SortOptions, Sorted, sort};
+pub use correspondence::{AxisSource, Decision, SortError, SortOptions, Sorted, sort, sort_while};
 pub use polyline::{Curve, CurveError};
-pub use resample::{Amount, MAX_POINTS, ResampleError, Resampling, resample};
+pub use resample::{Amount, MAX_POINTS, ResampleError, Resampling, resample, resample_while};
 pub(crate) use smoothing::{Ends, NotSolvable, smoothed};
 pub use smoothing::{SmoothError, smooth};
 pub use spline::{CubicSpline, SplineError, chord_parameters, uniform_parameters};
 pub use spline_length::SplineLength;
+pub use spread::{Spread, spread};

@@ -1,5 +1,7 @@
 //! Arc length along a cubic spline.
 
+use std::convert::Infallible;
+
 use super::spline::CubicSpline;
 use glam::DVec3;
 
@@ -48,12 +50,22 @@ struct Cell {
 impl SplineLength {
     /// Tabulates the arc length of a spline.
     pub fn of(spline: CubicSpline) -> Self {
+        match Self::of_while::<Infallible>(spline, &|| Ok(())) {
+            Ok(measured) => measured,
+        }
+    }
+
+    /// The same, or the error with which `go_on`, asked every 1024 pieces, says stop.
+    pub(crate) fn of_while<Stop>(spline: CubicSpline, go_on: &dyn Fn() -> Result<(), Stop>) -> Result<Self, Stop> {
         let chords: f64 = (0..spline.spans()).map(|span| chord(&spline, span)).sum();
         let enough = ENOUGH * chords / spline.spans() as f64;
         let mut cells = Vec::with_capacity(4 * spline.spans());
         let mut pieces = Vec::with_capacity(spline.spans());
         let mut before = 0.0;
         for span in 0..spline.spans() {
+            if span.is_multiple_of(1024) {
+                go_on()?;
+            }
             pieces.push(cells.len());
             let (from, to) = (spline.parameters()[span], spline.parameters()[span + 1]);
             // Parts still to be measured, the first one on top, with the length found for each and its halvings.
@@ -73,7 +85,7 @@ impl SplineLength {
                 }
             }
         }
-        Self { spline, cells, pieces, length: before }
+        Ok(Self { spline, cells, pieces, length: before })
     }
 
     /// The spline that was measured.

@@ -58,6 +58,8 @@ pub struct Deformed {
     pub first: usize,
     /// Last section of the influence range; it and all after it are as they were.
     pub last: usize,
+    /// How far the point moved that moved farthest, metres.
+    pub largest_move: f64,
     /// What was decided or adjusted on the way, one sentence each, for the artist.
     pub notes: Vec<String>,
 }
@@ -75,16 +77,23 @@ pub struct Deformed {
 /// # Errors
 /// [`CrossSectionError`] for an open contour or open sections, a range without a free section on each side of the
 /// replaced one, a contour farther from every section than that section is large or turned by more than 60 degrees
-/// against it, and one that is not star-shaped where matching by angle was asked for.
+/// against it, one that is not star-shaped where matching by angle was asked for, and where `progress`, called with
+/// the fraction done, asked to stop.
 pub fn deform_by_cross_section(
     sections: &Sections,
     contour: &Curve,
     options: &CrossSectionOptions,
+    progress: &dyn Fn(f64) -> bool,
 ) -> Result<Deformed, CrossSectionError> {
     check(sections, contour, options)?;
+    let go_on = |done: usize, of: usize| match progress(done as f64 / of as f64) {
+        true => Ok(()),
+        false => Err(CrossSectionError::Cancelled),
+    };
     let mut notes = Vec::new();
     let section = find_section(sections, contour, &mut notes)?;
     let (first, last) = range(sections, contour, section, options, &mut notes)?;
+    go_on(0, 1)?;
     let targets = matched(sections, contour, section, options.matching, &mut notes)?;
 
     let end = match options.continuity {
@@ -96,7 +105,12 @@ pub fn deform_by_cross_section(
     let shares = beam.solve(&OpenValues { pins: &[1.0], ..OpenValues::ends(0.0, 0.0) })?;
     let mut rows: Vec<Vec<DVec3>> = sections.iter().map(<[DVec3]>::to_vec).collect();
     let replaced = sections.section(section);
-    for (row, share) in rows[first..=last].iter_mut().zip(&shares) {
+    // Each row moves by one share of what the replaced section moves by.
+    let moves = targets.iter().zip(replaced).map(|(target, from)| target.distance(*from));
+    let largest_share = shares.iter().copied().fold(0.0, |a: f64, b| a.max(b.abs()));
+    let largest_move = largest_share * moves.fold(0.0, f64::max);
+    for (done, (row, share)) in rows[first..=last].iter_mut().zip(&shares).enumerate() {
+        go_on(done, shares.len())?;
         for ((point, target), from) in row.iter_mut().zip(&targets).zip(replaced) {
             *point += (*target - *from) * *share;
         }
@@ -106,7 +120,7 @@ pub fn deform_by_cross_section(
     }
     rows[section] = targets;
     let deformed = Sections::new(rows, true, sections.rails().to_vec())?;
-    Ok(Deformed { sections: deformed, section, first, last, notes })
+    Ok(Deformed { sections: deformed, section, first, last, largest_move, notes })
 }
 
 fn check(sections: &Sections, contour: &Curve, options: &CrossSectionOptions) -> Result<(), CrossSectionError> {

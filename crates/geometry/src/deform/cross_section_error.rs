@@ -112,6 +112,9 @@ pub enum CrossSectionError {
     /// The displacement cannot be computed.
     #[error("the displacement cannot be computed: {0}")]
     Beam(#[from] BeamError),
+    /// `progress` asked to stop.
+    #[error("stopped")]
+    Cancelled,
     /// The result is no stack of sections.
     #[error("the deformed points are no sections: {0}")]
     Sections(#[from] SectionsError),

@@ -40,7 +40,7 @@ fn options(reach: f64) -> CrossSectionOptions {
 }
 
 fn apply(sections: &Sections, contour: &Curve, options: &CrossSectionOptions) -> Deformed {
-    deform_by_cross_section(sections, contour, options).unwrap()
+    deform_by_cross_section(sections, contour, options, &|_| true).unwrap()
 }
 
 #[test]
@@ -195,7 +195,7 @@ fn a_bent_contour_is_matched_by_arc_length() {
     let section = Curve::new("", made.sections.section(4).to_vec(), true).unwrap();
     assert!(section.points().iter().all(|p| closest(&c, *p).distance < 1e-14));
     let by_angle = CrossSectionOptions { matching: Matching::Angle, ..options(0.31) };
-    let error = deform_by_cross_section(&tube(11), &c, &by_angle).unwrap_err();
+    let error = deform_by_cross_section(&tube(11), &c, &by_angle, &|_| true).unwrap_err();
     assert_eq!(error, CrossSectionError::NotStarShaped { what: "contour \"c\"".into() });
 }
 
@@ -217,7 +217,7 @@ fn a_pole_at_the_border_stays_a_pole() {
 fn errors_say_what_to_do() {
     let tube = tube(11);
     let error = |sections: &Sections, contour: &Curve, options: &CrossSectionOptions| {
-        deform_by_cross_section(sections, contour, options).unwrap_err()
+        deform_by_cross_section(sections, contour, options, &|_| true).unwrap_err()
     };
     let waist = contour(0.42, pear);
     let open = Curve::new("waist", waist.points().to_vec(), false).unwrap();
@@ -260,6 +260,23 @@ fn points_beyond_the_numbers_do_not_panic() {
     let waist = contour(0.3, pear);
     let grown = waist.map(|p| p * 1e300).unwrap();
     for (sections, contour) in [(&huge, &grown), (&tube, &grown), (&huge, &waist)] {
-        assert!(deform_by_cross_section(sections, contour, &options(0.2)).is_err());
+        assert!(deform_by_cross_section(sections, contour, &options(0.2), &|_| true).is_err());
     }
+}
+
+#[test]
+fn progress_rises_and_cancels_and_the_largest_move_is_told() {
+    let (sections, contour) = (tube(11), contour(0.5, |_| 0.3));
+    let calls = std::cell::RefCell::new(Vec::new());
+    let listen = |done: f64| {
+        calls.borrow_mut().push(done);
+        true
+    };
+    let made = deform_by_cross_section(&sections, &contour, &options(0.3), &listen).unwrap();
+    let calls = calls.into_inner();
+    assert!(calls.len() > made.last - made.first && calls.windows(2).all(|w| w[0] <= w[1]) && calls[0] >= 0.0);
+    let moved = sections.points().iter().zip(made.sections.points()).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+    assert!((made.largest_move - moved).abs() < 1e-12 && moved > 0.09, "{} {moved}", made.largest_move);
+    let stopped = deform_by_cross_section(&sections, &contour, &options(0.3), &|done| done < 0.5);
+    assert_eq!(stopped.unwrap_err(), CrossSectionError::Cancelled);
 }

@@ -10,6 +10,7 @@ use glam::DVec3;
 use serde_json::Value;
 
 use super::ReadError;
+use super::pace::Pace;
 use crate::curve::Curve;
 
 const FORMAT: &str = "curves JSON";
@@ -24,12 +25,24 @@ const FORMAT: &str = "curves JSON";
 /// [`ReadError`] where the bytes are empty or no JSON, the units are not metres, there is no curve, or an entry does not
 /// make a curve; messages name the entry and the point.
 pub fn read(bytes: &[u8]) -> Result<Vec<Curve>, ReadError> {
+    read_while(bytes, &|_| true)
+}
+
+/// The same, calling `progress` with the fraction done.
+///
+/// # Errors
+/// As [`read`], and [`ReadError::Stopped`] where `progress` answers `false`.
+pub fn read_while(bytes: &[u8], progress: &dyn Fn(f64) -> bool) -> Result<Vec<Curve>, ReadError> {
     if bytes.is_empty() {
         return Err(ReadError::Empty { format: FORMAT });
     }
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let document: Value = serde_json::from_slice(bytes)
-        .map_err(|error| malformed(format!("line {}, column {}", error.line(), error.column()), error.to_string()))?;
+    let mut pace = Pace::new(progress, 2 * bytes.len(), BYTES);
+    let reader = std::io::BufReader::with_capacity(BYTES, Watched { bytes, read: 0, pace: &mut pace });
+    let document: Value = serde_json::from_reader(reader).map_err(|error| match error.is_io() {
+        true => ReadError::Stopped,
+        false => malformed(format!("line {}, column {}", error.line(), error.column()), error.to_string()),
+    })?;
     let Value::Object(fields) = &document else {
         return Err(malformed("top level", expected("an object with a list \"contours\" or \"sections\"", &document)));
     };
@@ -45,6 +58,7 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Curve>, ReadError> {
             return Err(malformed(format!("\"{list}\""), expected("a list", entries)));
         };
         for (index, entry) in entries.iter().enumerate() {
+            pace.at(bytes.len() + index * bytes.len() / entries.len())?;
             curves.push(curve(entry, &format!("{singular} {index}"))?);
         }
     }
@@ -56,6 +70,25 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Curve>, ReadError> {
         });
     }
     Ok(curves)
+}
+
+/// Bytes between two questions whether to go on.
+const BYTES: usize = 1 << 16;
+
+/// Hands bytes to the parser, which can't be stopped otherwise.
+struct Watched<'a, 'p> {
+    bytes: &'a [u8],
+    read: usize,
+    pace: &'a mut Pace<'p>,
+}
+
+impl std::io::Read for Watched<'_, '_> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        self.pace.at(self.read).map_err(std::io::Error::other)?;
+        let count = std::io::Read::read(&mut &self.bytes[self.read..], buffer)?;
+        self.read += count;
+        Ok(count)
+    }
 }
 
 /// Curves as such a file: a list of `contours`, one a line, with all digits of their points and their pressure where

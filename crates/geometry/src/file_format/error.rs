@@ -64,6 +64,9 @@ pub enum WriteError {
 /// Why bytes cannot be read.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ReadError {
+    /// `progress` asked to stop.
+    #[error("stopped")]
+    Stopped,
     /// No bytes at all.
     #[error("the {format} file is empty: export it again")]
     Empty {

@@ -9,6 +9,7 @@ pub mod gltf_read;
 pub mod gltf_write;
 pub mod obj;
 mod output;
+mod pace;
 pub mod ply;
 pub mod svg;
 

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::neighbour::Neighbour;
+use super::sweep::gap_warning;
 use super::{GenerateError, GenerateOptions, Generated, check_size, report};
 use crate::beam::OpenCardinals;
 use crate::curve::{ArcLength, Curve, closest};
@@ -99,7 +100,10 @@ pub fn arch(
     }
     report(progress, 1, 1)?;
     let sections = Sections::new(rows, false, vec![0, middle, nodes - 1])?;
-    Ok(Generated { sections, notes: Vec::new(), warnings: contours.warnings(options), largest_gap: contours.gap() })
+    let bridged = contours.bridged();
+    let largest_gap = bridged[0].max(bridged[1]);
+    let warnings = gap_warning(contours.size, largest_gap, options.snap).into_iter().collect();
+    Ok(Generated { sections, notes: Vec::new(), warnings, largest_gap, gaps: vec![bridged] })
 }
 
 /// `dP/du` in the unit direction `inwards`, of an arc of a circle that begins with it and ends `chord` further after
@@ -216,11 +220,8 @@ impl<'a> Contours<'a> {
         rise < -1e-9 * run.length() * self.size * self.size
     }
 
-    fn gap(&self) -> f64 {
-        self.gaps.iter().map(|gap| gap.length()).fold(0.0, f64::max)
-    }
-
-    fn warnings(&self, options: &GenerateOptions) -> Vec<String> {
-        super::sweep::gap_warning(self.size, self.gap(), options.snap).into_iter().collect()
+    /// Distances bridged at both ends of the open contour, metres.
+    fn bridged(&self) -> [f64; 2] {
+        self.gaps.map(DVec3::length)
     }
 }

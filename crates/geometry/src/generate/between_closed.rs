@@ -202,6 +202,9 @@ mod tests {
         rails[1] = rails[1].map(|p| if p.y < 1.0 { p + gap * ((1.0 - p.y) / 0.1).min(1.0) } else { p }).unwrap();
         let made = between_closed(&rails, &hips, &neck, &options(Weights::Smooth), &|_| true).unwrap();
         assert!((made.largest_gap - 0.01).abs() < 1e-3 && made.warnings.is_empty(), "{}", made.largest_gap);
+        let gapped: Vec<bool> = made.gaps.iter().map(|[start, end]| *start > 1e-3 || *end > 1e-3).collect();
+        assert_eq!(gapped, [false, true, false, false, false], "{:?}", made.gaps);
+        assert_eq!(made.gaps[1][0], made.largest_gap);
         let column = made.sections.rails()[1];
         assert!(closest(&hips, made.sections.section(0)[column]).distance < 1e-12);
         let off = made.sections.iter().map(|section| closest(&rails[1], section[column]).distance);

@@ -94,6 +94,7 @@ pub fn blend(
         notes: alignment.notes,
         warnings: Vec::new(),
         largest_gap: 0.0,
+        gaps: Vec::new(),
     })
 }
 

@@ -32,8 +32,8 @@ pub(super) struct Feet {
     pub(super) offsets: Vec<f64>,
     /// Arc length of the first foot.
     pub(super) origin: f64,
-    /// Largest distance of a rail's end from the curve, metres.
-    pub(super) gap: f64,
+    /// Distance of each rail's end from the curve, metres.
+    pub(super) gaps: Vec<f64>,
 }
 
 impl Feet {
@@ -49,13 +49,13 @@ impl Feet {
     ) -> Result<Self, GenerateError> {
         let mut points = Vec::with_capacity(rails.len());
         let mut arcs = Vec::with_capacity(rails.len());
-        let mut gap = 0.0_f64;
+        let mut gaps = Vec::with_capacity(rails.len());
         for (index, (rail, at)) in rails.iter().zip(at).enumerate() {
             let foot = closest(curve, *at);
             if foot.distance.is_nan() || foot.distance > options.snap {
                 return Err(too_far(index, rail, curve, other, side, foot.distance, options.snap));
             }
-            gap = gap.max(foot.distance);
+            gaps.push(foot.distance);
             points.push(foot.point);
             arcs.push(foot.arc_length);
         }
@@ -69,7 +69,7 @@ impl Feet {
         } else {
             check_path(&offsets, length, side, curve)?;
         }
-        Ok(Self { points, offsets, origin, gap })
+        Ok(Self { points, offsets, origin, gaps })
     }
 }
 

@@ -189,6 +189,8 @@ pub struct Generated {
     pub warnings: Vec<String>,
     /// Largest distance bridged between a rail's end and where it should be, metres; at most the snap.
     pub largest_gap: f64,
+    /// The distances bridged at the start and at the end of each rail, metres; none for a blend, which has no rails.
+    pub gaps: Vec<[f64; 2]>,
 }
 
 /// Checks that lengths and areas of the curves stay within the range of a double.

@@ -57,11 +57,11 @@ pub(super) fn crossings(rails: &[Curve], profiles: &[&Curve], apex: bool) -> Res
 }
 
 /// The point at which all rails end.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Tip {
     pub(super) point: DVec3,
-    /// Largest distance of a rail's end from it, metres.
-    pub(super) gap: f64,
+    /// Distance of each rail's end from it, metres.
+    pub(super) gaps: Vec<f64>,
 }
 
 /// The apex of rails whose ends lie within the snap of their mean.
@@ -72,15 +72,15 @@ pub(super) fn apex(rails: &[Curve], snap: f64) -> Result<Tip, GenerateError> {
     } else {
         ends().sum::<DVec3>() / rails.len() as f64
     };
-    let mut gap = 0.0_f64;
+    let mut gaps = Vec::with_capacity(rails.len());
     for (rail, end) in ends().enumerate() {
         let distance = end.distance(point);
         if distance.is_nan() || distance > snap {
             return Err(GenerateError::NoApex { rail, name: rails[rail].name().to_owned(), distance, snap });
         }
-        gap = gap.max(distance);
+        gaps.push(distance);
     }
-    Ok(Tip { point, gap })
+    Ok(Tip { point, gaps })
 }
 
 impl Tip {
@@ -149,7 +149,7 @@ mod tests {
             let (sin, cos) = degrees.to_radians().sin_cos();
             (0..5).map(|i| DVec3::new(cos, sin, 0.0) * (1.0 - f64::from(i) / 4.0)).collect::<Vec<DVec3>>()
         };
-        let tip = Tip { point: DVec3::ZERO, gap: 0.0 };
+        let tip = Tip { point: DVec3::ZERO, gaps: vec![] };
         let (normal, angles) = tip.fan(&[0.0, 60.0, 200.0, 300.0].map(spoke)).unwrap();
         assert!(normal.distance(DVec3::Z) < 1e-12);
         assert!(angles.iter().zip([0.0, 60.0, 200.0, 300.0, 360.0]).all(|(a, b)| (a.to_degrees() - b).abs() < 1e-9));

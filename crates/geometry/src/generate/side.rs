@@ -45,7 +45,7 @@ impl Side<'_> {
             points: profiles.iter().map(|profile| profile[0]).collect(),
             offsets: self.crossings.to_vec(),
             origin: 0.0,
-            gap: 0.0,
+            gaps: Vec::new(),
         };
         let edge = Edge::new(self.neighbour, self.rail, Which::Start, &feet, (Across::Profile, &profiles), warnings)?;
         let mut span = 0;

@@ -74,9 +74,9 @@ pub(super) fn sweep(
     let mut stands: Vec<Stand<'_>> =
         profiles.iter().zip(&feet).map(|(curve, feet)| Stand::Ring { curve, origin: feet.origin }).collect();
     let mut curves: Vec<Option<&Curve>> = profiles.iter().map(|curve| Some(*curve)).collect();
-    let mut largest_gap = feet.iter().map(|feet| feet.gap).fold(0.0, f64::max);
+    let mut all_gaps: Vec<Vec<f64>> = feet.iter().map(|feet| feet.gaps.clone()).collect();
     if let Some(tip) = &tip {
-        largest_gap = largest_gap.max(tip.gap);
+        all_gaps.push(tip.gaps.clone());
         let fan = if *closed { tip.fan(&sampled) } else { None };
         let offsets = match &fan {
             Some((_, angles)) => angles.clone(),
@@ -84,7 +84,7 @@ pub(super) fn sweep(
         };
         stands.push(fan.map_or(Stand::Point, |(normal, _)| Stand::Fan(normal)));
         curves.push(None);
-        feet.push(Feet { points: vec![tip.point; rails.len()], offsets, origin: 0.0, gap: tip.gap });
+        feet.push(Feet { points: vec![tip.point; rails.len()], offsets, origin: 0.0, gaps: tip.gaps.clone() });
     }
     let edges = edges(drawing, &feet, &sampled, &mut warnings)?;
     let walks = Walk::all(&curves, feet, *closed, options.weights);
@@ -139,9 +139,11 @@ pub(super) fn sweep(
         rail.continue_neighbour(&mut rows, columns, &held, &functions, &mut warnings)?;
     }
     report(progress, 1, 1)?;
+    let largest_gap = all_gaps.iter().flatten().copied().fold(0.0, f64::max);
+    let gaps = all_gaps[0].iter().zip(&all_gaps[all_gaps.len() - 1]).map(|(start, end)| [*start, *end]).collect();
     let size = size(rails.iter().chain(profiles.iter().copied()));
     warnings.extend(gap_warning(size, largest_gap, options.snap));
-    Ok(Generated { sections: Sections::new(rows, *closed, rail_columns)?, notes, warnings, largest_gap })
+    Ok(Generated { sections: Sections::new(rows, *closed, rail_columns)?, notes, warnings, largest_gap, gaps })
 }
 
 fn check(drawing: &Drawing<'_>, options: &GenerateOptions) -> Result<(), GenerateError> {

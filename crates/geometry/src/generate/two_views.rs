@@ -107,8 +107,11 @@ pub fn two_views(
         });
     }
     report(progress, 1, 1)?;
-    let largest_gap = [base, tip].iter().flatten().flat_map(|apex| apex.gaps).map(DVec3::length).fold(0.0, f64::max);
-    Ok(Generated { sections: Sections::new(rows, true, columns.to_vec())?, notes: Vec::new(), warnings, largest_gap })
+    let gap = |apex: &Option<Apex>, rail: usize| apex.as_ref().map_or(0.0, |apex| apex.gaps[rail].length());
+    let gaps: Vec<[f64; 2]> = (0..4).map(|rail| [gap(&base, rail), gap(&tip, rail)]).collect();
+    let largest_gap = gaps.iter().flatten().copied().fold(0.0, f64::max);
+    let sections = Sections::new(rows, true, columns.to_vec())?;
+    Ok(Generated { sections, notes: Vec::new(), warnings, largest_gap, gaps })
 }
 
 /// Shares of the arc length at which sections stand, from 0 to 1: evenly, but twice as dense at an apex as evenly.

@@ -109,7 +109,8 @@ mod tests {
     fn open_and_closed_curves_are_walked_evenly_between_even_feet() {
         let line = Curve::new("line", vec![DVec3::ZERO, DVec3::X * 4.0], false).unwrap();
         let at = [0.0, 1.0, 3.0];
-        let feet = || Feet { points: at.map(|x| DVec3::X * x).to_vec(), offsets: at.to_vec(), origin: 0.0, gap: 0.0 };
+        let feet =
+            || Feet { points: at.map(|x| DVec3::X * x).to_vec(), offsets: at.to_vec(), origin: 0.0, gaps: vec![] };
         for weights in [Weights::Smooth, Weights::Linear] {
             let walks = Walk::all(&[Some(&line), None], vec![feet(), feet()], false, weights);
             assert!(walks[0].point(1, 0.5).distance(DVec3::X * 2.0) < 1e-15);

@@ -1,5 +1,6 @@
 //! What is wrong with a mesh, for reports and tests.
 
+use std::convert::Infallible;
 use std::fmt;
 
 use glam::DVec3;
@@ -50,13 +51,19 @@ pub struct MeshCheck {
 impl MeshCheck {
     /// Whether nothing is broken. Holes are allowed, and sheets may face either way; bodies face outwards.
     pub fn is_sound(&self) -> bool {
-        self.non_manifold_edges.is_empty()
-            && self.inconsistent_edges.is_empty()
-            && self.degenerate_polygons.is_empty()
-            && self.folded_polygons.is_empty()
-            && self.unused_vertices.is_empty()
-            && self.normals_outward != Some(false)
-            && self.corner_normals_agree
+        self.fault_count() == 0
+    }
+
+    /// Number of things that are broken: edges, polygons and vertices at fault, a body inside out, corner normals that
+    /// do not agree.
+    pub fn fault_count(&self) -> usize {
+        self.non_manifold_edges.len()
+            + self.inconsistent_edges.len()
+            + self.degenerate_polygons.len()
+            + self.folded_polygons.len()
+            + self.unused_vertices.len()
+            + usize::from(self.normals_outward == Some(false))
+            + usize::from(!self.corner_normals_agree)
     }
 }
 
@@ -103,21 +110,48 @@ impl fmt::Display for MeshCheck {
 
 /// Examines a mesh. The lists are in ascending order.
 pub fn check(mesh: &Mesh) -> MeshCheck {
-    let topology = Topology::new(mesh);
+    match examine::<Infallible>(mesh, &|_| Ok(())) {
+        Ok(found) => found,
+    }
+}
+
+/// The same, `None` where `progress`, called with the fraction done, says stop.
+pub fn check_while(mesh: &Mesh, progress: &dyn Fn(f64) -> bool) -> Option<MeshCheck> {
+    examine(mesh, &|done| if progress(done) { Ok(()) } else { Err(()) }).ok()
+}
+
+fn examine<Stop>(mesh: &Mesh, progress: &dyn Fn(f64) -> Result<(), Stop>) -> Result<MeshCheck, Stop> {
+    // About a third of the time goes into the topology.
+    let mut steps = (0..).map(|step| 0.3 + 0.06 * f64::from(step));
+    let mut go_on = || progress(steps.next().unwrap_or(1.0));
+    let topology = Topology::new_while(mesh, &|| progress(0.0))?;
+    go_on()?;
     let diagonal = measure::diagonal(mesh);
     let normals: Vec<DVec3> = (0..mesh.polygon_count()).map(|p| measure::polygon_normal(mesh, p)).collect();
+    go_on()?;
     let shells = topology.shells();
+    go_on()?;
     let shell_volumes = measure::shell_volumes(mesh, &topology);
+    go_on()?;
     let area = measure::area(mesh);
     let volume: f64 = shell_volumes.iter().sum();
     let negligible = 1e-9 * area * diagonal;
+    go_on()?;
     let body = volume.abs() > negligible && measure::lid_area(mesh, &topology) <= 0.75 * area;
-
+    go_on()?;
     let mut used = vec![false; mesh.positions().len()];
     for vertex in mesh.corners() {
         used[*vertex as usize] = true;
     }
-    MeshCheck {
+    let degenerate_polygons = (0..normals.len()).filter(|p| is_degenerate(mesh, *p, diagonal)).collect();
+    go_on()?;
+    let folded_polygons = folded_polygons(mesh, &topology, &normals);
+    go_on()?;
+    let corner_normals_agree = corner_normals_agree(mesh, &normals);
+    go_on()?;
+    let largest_fold_degrees = largest_fold(&topology, &normals).to_degrees();
+    go_on()?;
+    Ok(MeshCheck {
         vertices: mesh.positions().len(),
         polygons: mesh.polygon_count(),
         closed: topology.is_closed(),
@@ -126,18 +160,18 @@ pub fn check(mesh: &Mesh) -> MeshCheck {
         boundary_loops: topology.boundary_loops().len(),
         non_manifold_edges: topology.non_manifold_edges(),
         inconsistent_edges: topology.inconsistent_edges(),
-        degenerate_polygons: (0..normals.len()).filter(|p| is_degenerate(mesh, *p, diagonal)).collect(),
-        folded_polygons: folded_polygons(mesh, &topology, &normals),
+        degenerate_polygons,
+        folded_polygons,
         normals_outward: body.then_some(volume > 0.0),
         inward_shells: if body {
             shells.iter().zip(&shell_volumes).filter(|(_, v)| **v < -negligible).map(|(s, _)| s[0]).collect()
         } else {
             Vec::new()
         },
-        corner_normals_agree: corner_normals_agree(mesh, &normals),
+        corner_normals_agree,
         unused_vertices: (0..).zip(&used).filter(|(_, used)| !**used).map(|(v, _)| v).collect(),
-        largest_fold_degrees: largest_fold(&topology, &normals).to_degrees(),
-    }
+        largest_fold_degrees,
+    })
 }
 
 fn is_degenerate(mesh: &Mesh, polygon: usize, diagonal: f64) -> bool {

@@ -9,9 +9,9 @@ pub mod topology;
 pub mod transform;
 pub mod triangulate;
 
-pub use check::{MeshCheck, check};
+pub use check::{MeshCheck, check, check_while};
 pub use distance::{MeshDistance, Nearest};
 pub use polygon::{Mesh, MeshError};
 pub use topology::Topology;
-pub use transform::{flipped, join, transform};
+pub use transform::{TransformError, flipped, join, join_while, transform, transform_while};
 pub use triangulate::triangles;

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 ///
 /// Invariants, kept by the constructor: every polygon has three or more corners, every index is in range, every
 /// coordinate is finite, attributes have one entry a corner.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     name: String,
     positions: Vec<DVec3>,
@@ -61,6 +61,13 @@ pub enum MeshError {
     /// More vertices or corners than 32-bit indices reach.
     #[error("the mesh has more than 4 294 967 295 vertices or corners")]
     TooLarge,
+}
+
+impl Default for Mesh {
+    /// A mesh without vertices and polygons.
+    fn default() -> Self {
+        Self { name: String::new(), positions: vec![], corners: vec![], starts: vec![0], normals: None, uvs: None }
+    }
 }
 
 impl Mesh {
@@ -210,7 +217,7 @@ impl Mesh {
         &self.corners
     }
 
-    /// First corner of each polygon, and behind the last one the number of corners; empty for an empty mesh.
+    /// First corner of each polygon, and behind the last one the number of corners.
     pub fn starts(&self) -> &[u32] {
         &self.starts
     }

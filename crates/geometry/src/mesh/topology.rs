@@ -1,6 +1,11 @@
 //! Which polygons meet at which edges: boundaries, shells, Euler characteristic.
 
+use std::convert::Infallible;
+
 use super::Mesh;
+
+/// Polygons or vertices between two questions whether to go on: a few milliseconds.
+const STEP: usize = 1 << 16;
 
 /// The edges of a mesh with the polygons at each, sorted by their vertices, so that the same mesh always gives the same
 /// lists.
@@ -35,24 +40,60 @@ impl EdgeUse {
 impl Topology {
     /// Collects the edges of a mesh. A side whose ends are one vertex is no edge.
     pub fn new(mesh: &Mesh) -> Self {
-        let mut uses = Vec::with_capacity(mesh.corners().len());
-        let mut used = vec![false; mesh.positions().len()];
+        match Self::new_while::<Infallible>(mesh, &|| Ok(())) {
+            Ok(topology) => topology,
+        }
+    }
+
+    /// The same, or the error with which `go_on`, asked every 65,536 polygons or vertices, says stop.
+    ///
+    /// Uses are dealt out to their lower vertices first and sorted there, a few at each: sorting all at once could not
+    /// be stopped.
+    pub(crate) fn new_while<Stop>(mesh: &Mesh, go_on: &dyn Fn() -> Result<(), Stop>) -> Result<Self, Stop> {
+        let ask = |done: usize| if done.is_multiple_of(STEP) { go_on() } else { Ok(()) };
+        let sides = |corners: &[u32], k: usize| (corners[k], corners[if k + 1 == corners.len() { 0 } else { k + 1 }]);
+        let vertices = mesh.positions().len();
+        let mut used = vec![false; vertices];
+        // How many uses each vertex has as the lower one, then where they begin.
+        let mut places = vec![0_usize; vertices + 1];
         for (polygon, corners) in mesh.polygons().enumerate() {
-            for (k, &from) in corners.iter().enumerate() {
+            ask(polygon)?;
+            for k in 0..corners.len() {
+                let (from, to) = sides(corners, k);
                 used[from as usize] = true;
-                let to = corners[if k + 1 == corners.len() { 0 } else { k + 1 }];
                 if from != to {
-                    let edge = [from.min(to), from.max(to)];
-                    // Polygons cannot outnumber the corners, which have 32-bit places.
-                    uses.push(EdgeUse { edge, polygon: polygon as u32, forward: from < to });
+                    places[from.min(to) as usize + 1] += 1;
                 }
             }
         }
-        uses.sort_unstable();
-        let mut starts: Vec<usize> = (0..uses.len()).filter(|&i| i == 0 || uses[i].edge != uses[i - 1].edge).collect();
+        for vertex in 0..vertices {
+            places[vertex + 1] += places[vertex];
+        }
+        let mut uses = vec![EdgeUse { edge: [0; 2], polygon: 0, forward: false }; places[vertices]];
+        let mut next = places.clone();
+        for (polygon, corners) in mesh.polygons().enumerate() {
+            ask(polygon)?;
+            for k in 0..corners.len() {
+                let (from, to) = sides(corners, k);
+                if from != to {
+                    let edge = [from.min(to), from.max(to)];
+                    let place = &mut next[edge[0] as usize];
+                    // Polygons cannot outnumber the corners, which have 32-bit places.
+                    uses[*place] = EdgeUse { edge, polygon: polygon as u32, forward: from < to };
+                    *place += 1;
+                }
+            }
+        }
+        let mut starts = Vec::with_capacity(uses.len() / 2 + 1);
+        for vertex in 0..vertices {
+            ask(vertex)?;
+            let range = places[vertex]..places[vertex + 1];
+            uses[range.clone()].sort_unstable();
+            starts.extend(range.clone().filter(|i| *i == range.start || uses[*i].edge != uses[*i - 1].edge));
+        }
         starts.push(uses.len());
         let vertices = used.iter().filter(|used| **used).count();
-        Self { uses, starts, vertices, polygons: mesh.polygon_count() }
+        Ok(Self { uses, starts, vertices, polygons: mesh.polygon_count() })
     }
 
     /// Number of edges.

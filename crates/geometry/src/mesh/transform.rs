@@ -4,6 +4,9 @@ use glam::{DAffine3, DMat3, DVec2, DVec3};
 
 use super::{Mesh, MeshError, measure};
 
+/// Corners between two questions whether to go on.
+const STEP: usize = 1 << 18;
+
 /// Why a mesh is not transformed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TransformError {
@@ -13,6 +16,9 @@ pub enum TransformError {
     /// A transform onto a plane, a line or a point.
     #[error("the transform flattens the mesh: give every axis a scale other than 0")]
     Singular,
+    /// `progress` asked to stop.
+    #[error("stopped")]
+    Stopped,
     /// The transformed vertices make no mesh.
     #[error(transparent)]
     Mesh(#[from] MeshError),
@@ -27,6 +33,23 @@ pub enum TransformError {
 /// [`TransformError`] where the transform is not finite or is singular (a determinant below 1e-14 of the product of its
 /// columns' lengths), or a coordinate overflows.
 pub fn transform(mesh: &Mesh, transform: &DAffine3) -> Result<Mesh, TransformError> {
+    transform_while(mesh, transform, &|_| true)
+}
+
+fn ask(progress: &dyn Fn(f64) -> bool, done: f64) -> Result<(), TransformError> {
+    if progress(done) { Ok(()) } else { Err(TransformError::Stopped) }
+}
+
+/// The same, calling `progress` with the fraction done.
+///
+/// # Errors
+/// As [`transform`], and [`TransformError::Stopped`] where `progress` answers `false`.
+pub fn transform_while(
+    mesh: &Mesh,
+    transform: &DAffine3,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<Mesh, TransformError> {
+    ask(progress, 0.0)?;
     if !transform.is_finite() {
         return Err(TransformError::NotFinite);
     }
@@ -52,8 +75,21 @@ pub fn transform(mesh: &Mesh, transform: &DAffine3) -> Result<Mesh, TransformErr
         mapped.try_normalize().unwrap_or(*n)
     };
     let positions = mesh.positions().iter().map(|p| transform.transform_point3(*p)).collect();
-    let normals = mesh.normals().map(|normals| normals.iter().map(map_normal).collect());
+    ask(progress, 0.1)?;
+    let normals = match mesh.normals() {
+        Some(normals) => {
+            let mut mapped = Vec::with_capacity(normals.len());
+            for part in normals.chunks(STEP) {
+                ask(progress, 0.1 + 0.3 * mapped.len() as f64 / normals.len() as f64)?;
+                mapped.extend(part.iter().map(map_normal));
+            }
+            Some(mapped)
+        }
+        None => None,
+    };
+    ask(progress, 0.4)?;
     let moved = rebuild(mesh, positions, normals, mesh.uvs().map(<[DVec2]>::to_vec))?;
+    ask(progress, 0.7)?;
     Ok(if determinant < 0.0 { turned(&moved)? } else { moved })
 }
 
@@ -76,26 +112,62 @@ pub fn flipped(mesh: &Mesh) -> Result<Mesh, MeshError> {
 /// # Errors
 /// [`MeshError::TooLarge`] where there are more vertices or corners than 32-bit indices reach.
 pub fn join<'a>(meshes: impl IntoIterator<Item = &'a Mesh>) -> Result<Mesh, MeshError> {
+    joined(meshes, |_| Ok(()))
+}
+
+/// The same, calling `progress` with the fraction done.
+///
+/// # Errors
+/// As [`join`], and [`TransformError::Stopped`] where `progress` answers `false`.
+pub fn join_while<'a>(
+    meshes: impl IntoIterator<Item = &'a Mesh>,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<Mesh, TransformError> {
+    joined(meshes, |done| ask(progress, done))
+}
+
+fn joined<'a, E: From<MeshError>>(
+    meshes: impl IntoIterator<Item = &'a Mesh>,
+    ask: impl Fn(f64) -> Result<(), E>,
+) -> Result<Mesh, E> {
     let meshes: Vec<&Mesh> = meshes.into_iter().collect();
     let vertices: usize = meshes.iter().map(|m| m.positions().len()).sum();
     if vertices > u32::MAX as usize {
-        return Err(MeshError::TooLarge);
+        return Err(MeshError::TooLarge.into());
     }
     let mut positions = Vec::with_capacity(vertices);
-    let mut polygons: Vec<Vec<u32>> = Vec::with_capacity(meshes.iter().map(|m| m.polygon_count()).sum());
+    let mut corners = Vec::with_capacity(meshes.iter().map(|m| m.corners().len()).sum());
     for mesh in &meshes {
+        ask(0.3 * positions.len() as f64 / vertices.max(1) as f64)?;
         let behind = positions.len() as u32;
         positions.extend_from_slice(mesh.positions());
-        polygons.extend(mesh.polygons().map(|p| p.iter().map(|v| v + behind).collect()));
+        corners.extend(mesh.corners().iter().map(|vertex| vertex + behind));
     }
-    let mut joined = Mesh::new(positions, polygons)?.named(meshes.first().map_or("", |m| m.name()));
+    ask(0.3)?;
+    let counts = meshes.iter().flat_map(|mesh| mesh.polygons().map(<[u32]>::len));
+    let mut joined = Mesh::from_corners(positions, corners, counts)?.named(meshes.first().map_or("", |m| m.name()));
     if meshes.iter().any(|m| m.normals().is_some()) {
-        joined = joined.with_normals(meshes.iter().flat_map(|m| normals_or_flat(m)).collect())?;
+        let mut normals = Vec::with_capacity(joined.corners().len());
+        for mesh in &meshes {
+            ask(0.4 + 0.3 * normals.len() as f64 / joined.corners().len().max(1) as f64)?;
+            normals.extend(normals_or_flat(mesh));
+        }
+        ask(0.7)?;
+        joined = joined.with_normals(normals)?;
     }
     if meshes.iter().any(|m| m.uvs().is_some()) {
-        let uvs = |m: &&Mesh| m.uvs().map_or_else(|| vec![DVec2::ZERO; m.corners().len()], <[DVec2]>::to_vec);
-        joined = joined.with_uvs(meshes.iter().flat_map(uvs).collect())?;
+        let mut uvs = Vec::with_capacity(joined.corners().len());
+        for mesh in &meshes {
+            ask(0.8 + 0.1 * uvs.len() as f64 / joined.corners().len().max(1) as f64)?;
+            match mesh.uvs() {
+                Some(own) => uvs.extend_from_slice(own),
+                None => uvs.extend(std::iter::repeat_n(DVec2::ZERO, mesh.corners().len())),
+            }
+        }
+        ask(0.9)?;
+        joined = joined.with_uvs(uvs)?;
     }
+    ask(1.0)?;
     Ok(joined)
 }
 
@@ -120,8 +192,8 @@ fn turned(mesh: &Mesh) -> Result<Mesh, MeshError> {
         values
     }
     let corners = reverse(mesh, mesh.corners().to_vec());
-    let polygons = (0..mesh.polygon_count()).map(|p| &corners[mesh.corner_range(p)]);
-    let mut turned = Mesh::new(mesh.positions().to_vec(), polygons)?.named(mesh.name());
+    let counts = mesh.polygons().map(<[u32]>::len);
+    let mut turned = Mesh::from_corners(mesh.positions().to_vec(), corners, counts)?.named(mesh.name());
     if let Some(normals) = mesh.normals() {
         turned = turned.with_normals(reverse(mesh, normals.to_vec()))?;
     }
@@ -138,7 +210,8 @@ fn rebuild(
     normals: Option<Vec<DVec3>>,
     uvs: Option<Vec<DVec2>>,
 ) -> Result<Mesh, MeshError> {
-    let mut rebuilt = Mesh::new(positions, mesh.polygons())?.named(mesh.name());
+    let counts = mesh.polygons().map(<[u32]>::len);
+    let mut rebuilt = Mesh::from_corners(positions, mesh.corners().to_vec(), counts)?.named(mesh.name());
     if let Some(normals) = normals {
         rebuilt = rebuilt.with_normals(normals)?;
     }

@@ -94,9 +94,12 @@ pub(crate) fn sample(
     let system = SlopeSystem::new(intervals, ends);
     system.solve(points, &mut slopes, nodes);
 
+    let asked = |done: f64| if progress(done) { Ok(()) } else { Err(SkinError::Cancelled) };
+    asked(0.0)?;
     let ends = if closed { Ends::Periodic } else { Ends::Open { start_given: false, end_given: false } };
     let across = SlopeSystem::new(knots::across(sections, options.parameter, poles), ends);
     let point = spread(points, &across, nodes, options.columns);
+    asked(0.05)?;
     let slope = spread(&slopes, &across, nodes, options.columns);
 
     let tip_normals = [tips[0].as_ref().map(|t| -t.axis), tips[1].as_ref().map(|t| t.axis)];
@@ -105,8 +108,8 @@ pub(crate) fn sample(
     let mut starts = Vec::with_capacity(rows + 1);
     for row in 0..rows {
         let (section, step) = (row / options.rows, row % options.rows);
-        if step == 0 && !progress(row as f64 / rows as f64) {
-            return Err(SkinError::Cancelled);
+        if step == 0 {
+            asked(0.1 + 0.9 * row as f64 / rows as f64)?;
         }
         starts.push(positions.len());
         if step == 0 && poles[section] {

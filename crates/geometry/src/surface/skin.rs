@@ -138,10 +138,12 @@ pub enum SkinError {
 /// [`SkinError`] where options are out of range, sections coincide, or a cap is asked for that cannot be made.
 pub fn skin(sections: &Sections, options: &SkinOptions, progress: &dyn Fn(f64) -> bool) -> Result<Mesh, SkinError> {
     let poles = check(sections, options)?;
-    let mut grid = grid::sample(sections, &poles, options, progress)?;
+    let mut grid = grid::sample(sections, &poles, options, &|done| progress(0.6 * done))?;
     let mut parts = MeshParts { positions: std::mem::take(&mut grid.positions), ..MeshParts::default() };
     parts.reserve((grid.rows() - 1) * grid.cells);
+    let asked = |done: f64| if progress(done) { Ok(()) } else { Err(SkinError::Cancelled) };
     for row in 0..grid.rows() - 1 {
+        asked(0.6 + 0.3 * row as f64 / grid.rows() as f64)?;
         strip(&mut parts, &grid, row);
     }
     let last = sections.len() - 1;
@@ -154,8 +156,10 @@ pub fn skin(sections: &Sections, options: &SkinOptions, progress: &dyn Fn(f64) -
             cap::flat(&mut parts, &rim).map_err(|cap::NoArea| SkinError::CapWithoutArea { section })?;
         }
     }
+    asked(0.9)?;
     let mesh = parts.finish()?;
-    if progress(1.0) { Ok(mesh) } else { Err(SkinError::Cancelled) }
+    asked(1.0)?;
+    Ok(mesh)
 }
 
 /// Refuses what makes no surface, and says which sections are poles.

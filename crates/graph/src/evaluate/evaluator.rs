@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use crate::catalogue::Catalogue;
 use crate::evaluate::blame::names;
 use crate::evaluate::evaluation::{Evaluation, Outcome, OutcomeState};
+use crate::evaluate::examine::Examiner;
 use crate::evaluate::file_cache::FileCache;
 use crate::evaluate::flight::Flights;
 use crate::evaluate::inputs::Key;
@@ -42,12 +43,19 @@ pub struct Request<'a> {
     events: &'a dyn Events,
     cancel: CancelToken,
     base: PathBuf,
+    examine: bool,
 }
 
 impl<'a> Request<'a> {
     /// Asks for the results of these nodes and, through them, of what they depend on.
     pub fn nodes(targets: &[NodeId]) -> Self {
-        Self { targets: targets.to_vec(), events: &(), cancel: CancelToken::new(), base: PathBuf::new() }
+        Self {
+            targets: targets.to_vec(),
+            events: &(),
+            cancel: CancelToken::new(),
+            base: PathBuf::new(),
+            examine: false,
+        }
     }
 
     /// Listens to what happens.
@@ -60,6 +68,12 @@ impl<'a> Request<'a> {
     #[must_use]
     pub fn cancel(self, cancel: &CancelToken) -> Self {
         Self { cancel: cancel.clone(), ..self }
+    }
+
+    /// Asks as well for what the kinds of these nodes measure on request only ([`crate::NodeKind::examine`]).
+    #[must_use]
+    pub fn examine(self) -> Self {
+        Self { examine: true, ..self }
     }
 
     /// Relative paths in the graph start at this folder.
@@ -154,7 +168,14 @@ impl Evaluator {
         };
         let ended = runner.run(self.pool.as_ref());
         self.files.drop_bytes();
-        self.conclude(graph, request, plan, ended, begun)
+        let mut evaluation = self.conclude(graph, request, plan, ended);
+        if request.examine {
+            let key_of = |id: NodeId| self.slots.get(id.index()).and_then(|slot| slot.key.clone());
+            let examiner = Examiner { memo: &self.memo, cancel: &request.cancel, events: request.events };
+            examiner.examine(&mut evaluation, key_of);
+        }
+        evaluation.duration = begun.elapsed();
+        evaluation
     }
 
     /// Marks what changed since the last evaluation, and everything behind it, as stale.
@@ -210,14 +231,7 @@ impl Evaluator {
         }
     }
 
-    fn conclude(
-        &mut self,
-        graph: &Graph,
-        request: &Request<'_>,
-        mut plan: Plan,
-        mut ended: Vec<Ended>,
-        begun: Instant,
-    ) -> Evaluation {
+    fn conclude(&mut self, graph: &Graph, request: &Request<'_>, mut plan: Plan, mut ended: Vec<Ended>) -> Evaluation {
         let mut evaluation = Evaluation::default();
         let targets: HashSet<NodeId, KeyHasherBuilder> = request.targets.iter().copied().collect();
         let mut outcomes = Vec::with_capacity(plan.order.len());
@@ -264,7 +278,6 @@ impl Evaluator {
         self.forget_keys(graph, behind, |slot| slot.computed_in != evaluation_number);
         evaluation.outcomes = outcomes.into_iter().collect();
         evaluation.kinds = kinds.into_iter().collect();
-        evaluation.duration = begun.elapsed();
         evaluation
     }
 }

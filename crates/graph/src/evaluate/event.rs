@@ -23,8 +23,8 @@ pub struct Event<'a> {
 /// First come the nodes that are settled without running: [`Hit`](Self::Hit), [`Failed`](Self::Failed) or
 /// [`Waiting`](Self::Waiting), one for each. Then comes [`Planned`](Self::Planned), once, and after it the scheduled
 /// nodes. Each of these ends with exactly one of `Hit`, `Finished`, `Failed`, `Waiting` and `Cancelled`: a progress bar
-/// that takes its length from `Planned` and counts these five, from there on, fills exactly. `Started` and `Progress`
-/// don't count; a node that starts is ended by `Finished`, `Failed` or `Cancelled`.
+/// that takes its length from `Planned` and counts these five, from there on, fills exactly. `Started`, `Progress` and
+/// `Examined` don't count; a node that starts is ended by `Finished`, `Failed` or `Cancelled`.
 #[derive(Clone, Debug)]
 pub enum EventKind<'a> {
     /// So many nodes are scheduled; some of them need not run, where an equal result turns up meanwhile. Comes once,
@@ -45,6 +45,9 @@ pub enum EventKind<'a> {
     Waiting(&'a [String]),
     /// It was stopped.
     Cancelled,
+    /// What [`crate::Request::examine`] asks for was measured on its values, in this time. Comes behind the end of
+    /// the node, and does not count.
+    Examined(Duration),
 }
 
 impl fmt::Display for Event<'_> {
@@ -59,6 +62,7 @@ impl fmt::Display for Event<'_> {
             EventKind::Failed(failure) => write!(f, "failed {name}: {failure}"),
             EventKind::Waiting(on) => write!(f, "waiting {name} on {}", on.join(", ")),
             EventKind::Cancelled => write!(f, "cancelled {name}"),
+            EventKind::Examined(_) => write!(f, "examined {name}"),
         }
     }
 }

@@ -21,7 +21,7 @@ impl Entry {
     fn byte_size(&self) -> usize {
         // The map's own cost for an entry counts too, or a million tiny results would cost nothing.
         let values = self.result.as_ref().map_or(0, |values| values.iter().map(Value::byte_size).sum());
-        values + size_of::<Self>() + 128
+        values + self.report.byte_size() + size_of::<Self>() + 128
     }
 }
 

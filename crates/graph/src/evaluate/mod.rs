@@ -12,13 +12,15 @@
 //! then depends on who comes first, but not how many run, as long as the byte budget holds what an evaluation makes.
 
 mod blame;
+pub(crate) mod call;
 mod cancel;
 mod evaluation;
 mod evaluator;
 mod event;
+mod examine;
 mod file_cache;
 mod flight;
-mod inputs;
+pub(crate) mod inputs;
 mod memo;
 mod plan;
 mod run;

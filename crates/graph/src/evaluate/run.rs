@@ -1,12 +1,12 @@
 //! Runs the steps of a plan, on one thread or many.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use crate::evaluate::blame::{Blame, names};
+use crate::evaluate::call::call;
 use crate::evaluate::file_cache::FileCache;
 use crate::evaluate::flight::{Boarding, Flights};
 use crate::evaluate::inputs::{FileBytes, Key, Supply, failure, files, gather, key};
@@ -14,8 +14,7 @@ use crate::evaluate::memo::{Entry, Memo};
 use crate::evaluate::plan::{Plan, Step};
 use crate::evaluate::{CancelToken, Event, EventKind, Events, Failure};
 use crate::graph::{Graph, NodeId};
-use crate::node_kind::NodeKind;
-use crate::ports::{NodeError, Ports};
+use crate::ports::NodeError;
 use crate::report::Report;
 use crate::value::{ContentHash, Value};
 
@@ -281,9 +280,6 @@ impl Runner<'_> {
         told_to_stop: &AtomicBool,
     ) -> Result<(Vec<Value>, Report), NodeError> {
         let kind = &*step.kind;
-        let Some(run) = kind.evaluate_fn() else {
-            return Err(NodeError::new(format!("the node kind \"{}\" does not say what it does", kind.name())));
-        };
         let progress = |fraction: f64| {
             let done = if fraction.is_nan() { 0.0 } else { fraction.clamp(0.0, 1.0) };
             self.emit(step, EventKind::Progress(done));
@@ -293,12 +289,7 @@ impl Runner<'_> {
             }
             !stop
         };
-        let mut ports = Ports::new(kind, inputs, files, self.base, &progress);
-        match catch_unwind(AssertUnwindSafe(|| run(&mut ports))) {
-            Ok(Ok(())) => ports.finish(),
-            Ok(Err(error)) => Err(error),
-            Err(panic) => Err(NodeError::new(panic_message(kind, panic.as_ref()))),
-        }
+        call(kind, inputs, files, self.base, &progress)
     }
 }
 
@@ -311,10 +302,4 @@ fn taken_from(first: &State) -> Ended {
         Some(other) => other.taken(),
         None => Ended::Cancelled,
     }
-}
-
-fn panic_message(kind: &NodeKind, panic: &(dyn std::any::Any + Send)) -> String {
-    let text = panic.downcast_ref::<&str>().map(|s| (*s).to_owned());
-    let text = text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();
-    format!("the node kind \"{}\" broke down ({text}); this is a mistake in the kind, please report it", kind.name())
 }

@@ -38,8 +38,8 @@ pub use literal_text::{LiteralError, parse_literal};
 pub(crate) use literal_text::{Spelled, parse};
 pub use problem::{FileError, Problem, Severity};
 pub use read::{Loaded, from_bytes, from_text};
-pub(crate) use write::selection_to_text;
 pub use write::to_text;
+pub(crate) use write::{number, quoted, selection_to_text};
 
 /// Version of the format that this library writes. Older versions are read.
 pub const FORMAT_VERSION: u32 = 1;

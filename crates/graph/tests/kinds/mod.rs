@@ -225,13 +225,14 @@ fn measure() -> NodeKind {
         let samples = node.input::<Samples>("samples", "What to measure.");
         let offset = node.optional::<f64>("offset", "Added, where connected.");
         let total = node.output::<f64>("total", "The sum.");
+        let found = node.figure("samples", Unit::Length, "The sum of the samples.");
         node.evaluate(move |ports| {
             let sum: f64 = ports.read(samples).0.iter().sum();
             let offset = ports.read_optional(offset).copied();
             if offset.is_none() {
                 ports.note("no offset");
             }
-            ports.figure("samples", sum, "m");
+            ports.figure(found, sum);
             ports.write(total, sum + offset.unwrap_or(0.0));
             Ok(())
         });

@@ -20,7 +20,8 @@ pub(crate) fn kind() -> NodeKind {
         let (axis, offset, keep) = (ports.choice(axis), ports.value(offset), ports.value(keep));
         let originals = &ports.read(curves).0;
         let mut result = if keep { originals.clone() } else { Vec::new() };
-        for original in originals {
+        for (done, original) in originals.iter().enumerate() {
+            ports.progress(done as f64 / originals.len() as f64)?;
             let image = original.map(|p| axis.reflect(p, offset)).at(curves)?;
             let name = if keep { format!("{} mirrored", image.name()) } else { image.name().to_owned() };
             result.push(image.renamed(name));

@@ -1,8 +1,8 @@
 //! **Sort**: puts curves in the order the detail generator needs, and says what it decided.
 //! Reference: thesis 6.4, Figure 6.11.
 
-use maquette_geometry::curve::{SortOptions, sort};
-use maquette_graph::{AtPort, Choices, NodeKind};
+use maquette_geometry::curve::{Decision, SortError, SortOptions, sort_while};
+use maquette_graph::{AtPort, Choices, NodeError, NodeKind, Unit};
 
 use crate::wire;
 
@@ -53,6 +53,27 @@ pub(crate) fn kind() -> NodeKind {
     let reverse = node.boolean("reverse", false, "Run the rails the other way: start and end change places.");
     let rails = node.output::<wire::Curves>("rails", "Open curves in order around, all running the same way.");
     let closed = node.output::<wire::Curves>("closed", "Closed curves, counter-clockwise, started at rail 0.");
+    let ordered = node.table(
+        "rails",
+        &[
+            ("rail", Unit::None),
+            ("curve", Unit::None),
+            ("angle", Unit::Angle),
+            ("reversed", Unit::None),
+            ("pinned", Unit::None),
+        ],
+        "The rails in order: their curves, angles from the seam, and whether they run against their drawing.",
+    );
+    let started = node.table(
+        "closed",
+        &[("curve", Unit::None), ("reversed", Unit::None), ("start-moved", Unit::Length)],
+        "The closed curves: whether they were reversed, and how far along them their start moved to rail 0.",
+    );
+    let joined = node.figure(
+        "apex-moved",
+        Unit::Length,
+        "How far the farthest rail end was moved to the point in which all rails meet, or two crossing curves were apart.",
+    );
     node.evaluate(move |ports| {
         let order = ports.read(order).split(',').map(str::trim).filter(|name| !name.is_empty()).map(str::to_owned);
         let options = SortOptions {
@@ -60,8 +81,33 @@ pub(crate) fn kind() -> NodeKind {
             order: order.collect(),
             reverse_run: ports.value(reverse),
         };
-        let sorted = sort(&ports.read(curves).0, &options).at(curves)?;
+        let go_on = ports.progress_callback();
+        let sorted = match sort_while(&ports.read(curves).0, &options, &|| go_on(0.5)) {
+            Err(SortError::Stopped) => return Err(NodeError::Cancelled),
+            sorted => sorted.at(curves)?,
+        };
         sorted.decisions.iter().for_each(|decision| ports.note(decision));
+        let (mut rails_found, mut closed_found) = (Vec::new(), Vec::new());
+        for decision in &sorted.decisions {
+            match decision {
+                Decision::Rail { rail, curve, flipped, angle, pinned } => rails_found.push(vec![
+                    (*rail).into(),
+                    curve.as_str().into(),
+                    angle.to_degrees().into(),
+                    (*flipped).into(),
+                    (*pinned).into(),
+                ]),
+                Decision::Closed { curve, reversed, moved } => {
+                    closed_found.push(vec![curve.as_str().into(), (*reversed).into(), (*moved).into()]);
+                }
+                Decision::Apex { moved: apart, .. } | Decision::Cut { gap: apart, .. } => ports.figure(joined, *apart),
+                _ => {}
+            }
+        }
+        ports.table(ordered, rails_found);
+        if !closed_found.is_empty() {
+            ports.table(started, closed_found);
+        }
         sorted.warnings.iter().for_each(|warning| ports.warn(warning));
         ports.write(rails, wire::Curves(sorted.rails));
         ports.write(closed, wire::Curves(sorted.closed));

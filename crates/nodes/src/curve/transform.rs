@@ -12,8 +12,12 @@ pub(crate) fn kind() -> NodeKind {
     let transformed = node.output::<wire::Curves>("curves", "The transformed curves, in the same order.");
     node.evaluate(move |ports| {
         let affine = affine.read(ports)?;
-        let moved = ports.read(curves).0.iter().map(|curve| curve.map(|p| affine.transform_point3(p)));
-        let moved = moved.collect::<Result<_, _>>().at(curves)?;
+        let drawn = &ports.read(curves).0;
+        let mut moved = Vec::with_capacity(drawn.len());
+        for curve in drawn {
+            ports.progress(moved.len() as f64 / drawn.len() as f64)?;
+            moved.push(curve.map(|p| affine.transform_point3(p)).at(curves)?);
+        }
         ports.write(transformed, wire::Curves(moved));
         Ok(())
     });

@@ -4,7 +4,7 @@
 use maquette_geometry::deform::{
     Continuity, CrossSectionError, CrossSectionOptions, Matching, deform_by_cross_section,
 };
-use maquette_graph::{AtPort, Choices, NodeKind};
+use maquette_graph::{AtPort, Choices, NodeError, NodeKind, Unit};
 
 use crate::stiffness::StiffnessInputs;
 use crate::wire;
@@ -52,7 +52,11 @@ pub(crate) fn kind() -> NodeKind {
     let matching = node.choice::<MatchingChoice>("matching", "How points of the contour and the section correspond.");
     let stiffness = StiffnessInputs::declare(&mut node);
     let deformed = node.output::<wire::Sections>("sections", "The deformed sections; the contour is one of them.");
+    let replaced = node.figure("section", Unit::None, "The section that the contour replaces, counted from 0.");
+    let moving = node.figure("sections-moved", Unit::None, "How many sections move, the replaced one among them.");
+    let farthest = node.figure("largest-move", Unit::Length, "How far the point moves that moves farthest.");
     node.evaluate(move |ports| {
+        let progress = ports.progress_callback();
         let options = CrossSectionOptions {
             stiffness: stiffness.read(ports)?,
             before: ports.value(before),
@@ -61,7 +65,9 @@ pub(crate) fn kind() -> NodeKind {
             matching: ports.choice(matching).0,
         };
         use CrossSectionError as E;
-        let result = match deform_by_cross_section(&ports.read(sections).0, &ports.read(contour).0, &options) {
+        let (stack, drawn) = (&ports.read(sections).0, &ports.read(contour).0);
+        let result = match deform_by_cross_section(stack, drawn, &options, &progress) {
+            Err(E::Cancelled) => Err(NodeError::Cancelled),
             Err(error @ (E::Reach { which, .. } | E::RangeTooSmall { which, .. })) => {
                 Err(error).at(if which == "before" { before } else { after })
             }
@@ -83,6 +89,12 @@ pub(crate) fn kind() -> NodeKind {
             result.last.saturating_sub(1)
         ));
         result.notes.iter().for_each(|note| ports.note(note));
+        #[expect(clippy::cast_precision_loss, reason = "counts of sections")]
+        {
+            ports.figure(replaced, result.section as f64);
+            ports.figure(moving, (result.last - result.first).saturating_sub(1) as f64);
+        }
+        ports.figure(farthest, result.largest_move);
         ports.write(deformed, wire::Sections(result.sections));
         Ok(())
     });

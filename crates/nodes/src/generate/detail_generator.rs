@@ -5,7 +5,7 @@ use maquette_geometry::generate::{
     Case, Frame, GenerateError, GenerateOptions, Generated, LocalDetail, ViewPlacement, Weights, between_closed,
     two_views,
 };
-use maquette_graph::{AtPort, Choices, NodeError, NodeKind};
+use maquette_graph::{AtPort, Choices, NodeError, NodeKind, Unit};
 
 use crate::stiffness::StiffnessInputs;
 use crate::wire;
@@ -101,6 +101,16 @@ pub(crate) fn kind() -> NodeKind {
     let snap = node.length("snap", 0.02, 0.0..=10.0, "How far a rail's end may be from where it should be.");
     node.soft_range(snap, 0.0..=0.1);
     let generated = node.output::<wire::Sections>("sections", "The sections; the rails run along them.");
+    let widest = node.figure(
+        "largest-gap",
+        Unit::Length,
+        "Largest distance bridged between a rail's end and where it should be; at most the snap.",
+    );
+    let bridged = node.table(
+        "rails",
+        &[("rail", Unit::None), ("start-gap", Unit::Length), ("end-gap", Unit::Length)],
+        "The distances bridged at both ends of each rail.",
+    );
     node.evaluate(move |ports| {
         let drawn = &ports.read(rails).0;
         let loops = ports.read_optional(closed).map(|curves| curves.0.as_slice()).unwrap_or_default();
@@ -164,10 +174,13 @@ pub(crate) fn kind() -> NodeKind {
             }
             made => made.at(rails),
         };
-        let Generated { sections, notes, warnings, largest_gap } = made?;
+        let Generated { sections, notes, warnings, largest_gap, gaps } = made?;
         notes.iter().for_each(|note| ports.note(note));
         warnings.iter().for_each(|warning| ports.warn(warning));
-        ports.figure("largest-gap", largest_gap, "m");
+        ports.figure(widest, largest_gap);
+        let rows =
+            drawn.iter().zip(gaps).map(|(rail, [start, end])| vec![rail.name().into(), start.into(), end.into()]);
+        ports.table(bridged, rows.collect());
         ports.write(generated, wire::Sections(sections));
         Ok(())
     });

@@ -1,9 +1,9 @@
 //! **Import curves**: contours and sections from JSON, paths from SVG.
 
 use glam::DVec2;
-use maquette_geometry::curve::Curve;
-use maquette_geometry::file_format::{FileFormat, curves_json, svg};
-use maquette_graph::{AtPort, Choices, NodeKind};
+use maquette_geometry::curve::{ArcLength, Curve};
+use maquette_geometry::file_format::{FileFormat, ReadError, curves_json, svg};
+use maquette_graph::{AtPort, Choices, NodeError, NodeKind, Unit};
 
 use crate::view_plane::ViewPlane;
 use crate::wire;
@@ -66,12 +66,20 @@ pub(crate) fn kind() -> NodeKind {
         node.length("tolerance", 1e-4, 1e-9..=1.0, "SVG: largest distance of the points' polyline from the true path.");
     node.soft_range(tolerance, 1e-5..=1e-2);
     let curves = node.output::<wire::Curves>("curves", "The curves in the order of the file, with their names.");
+    let found = node.table(
+        "curves",
+        &[("curve", Unit::None), ("closed", Unit::None), ("points", Unit::None), ("length", Unit::Length)],
+        "The curves of the file.",
+    );
     node.reads_file(file);
     node.evaluate(move |ports| {
         let path = ports.path(file)?;
         let bytes = ports.file(file)?;
-        let imported = match FileFormat::from_path(&path.to_string_lossy()).at(file)? {
-            FileFormat::Json => curves_json::read(&bytes).at(file)?,
+        let imported: Vec<Curve> = match FileFormat::from_path(&path.to_string_lossy()).at(file)? {
+            FileFormat::Json => match curves_json::read_while(&bytes, &ports.progress_callback()) {
+                Err(ReadError::Stopped) => return Err(NodeError::Cancelled),
+                curves => curves.at(file)?,
+            },
             FileFormat::Svg => {
                 let (plane, offset, scale) = (ports.choice(plane), ports.value(offset), ports.value(scale));
                 let paths = svg::read(&bytes, ports.value(tolerance) / scale).at(file)?;
@@ -89,6 +97,11 @@ pub(crate) fn kind() -> NodeKind {
                 return Err(message).at(file);
             }
         };
+        let row = |curve: &Curve| {
+            let length = ArcLength::of(curve).length();
+            vec![curve.name().into(), curve.is_closed().into(), curve.points().len().into(), length.into()]
+        };
+        ports.table(found, imported.iter().map(row).collect());
         ports.write(curves, wire::Curves(imported));
         Ok(())
     });

@@ -1,8 +1,9 @@
 //! **Join meshes**: several meshes become one.
 
-use maquette_geometry::mesh::join;
+use maquette_geometry::mesh::join_while;
 use maquette_graph::{NodeError, NodeKind, OptionalInput};
 
+use crate::mesh::stoppable;
 use crate::wire;
 
 pub(crate) fn kind() -> NodeKind {
@@ -18,7 +19,8 @@ pub(crate) fn kind() -> NodeKind {
         if connected.is_empty() {
             return Err(NodeError::new("nothing is connected: link at least one mesh"));
         }
-        ports.write(joined, wire::Mesh::new(join(connected)?));
+        let made = stoppable(join_while(connected, &ports.progress_callback()))??;
+        ports.write(joined, wire::Mesh::new(made));
         Ok(())
     });
     node

@@ -1,9 +1,10 @@
 //! **Mirror mesh**: the mirror image of a mesh, with or without the original.
 
 use glam::{DAffine3, DVec3};
-use maquette_geometry::mesh::{join, transform};
+use maquette_geometry::mesh::{join_while, transform_while};
 use maquette_graph::{AtPort, NodeKind};
 
+use crate::mesh::stoppable;
 use crate::view_plane::MirrorPlane;
 use crate::wire;
 
@@ -20,8 +21,13 @@ pub(crate) fn kind() -> NodeKind {
         let original = &ports.read(mesh).0;
         let reflection =
             DAffine3 { translation: axis.reflect(DVec3::ZERO, offset), ..DAffine3::from_scale(axis.signs()) };
-        let image = transform(original, &reflection).at(mesh)?;
-        let result = if ports.value(keep) { join([original, &image]).at(mesh)? } else { image };
+        let progress = ports.progress_callback();
+        let image = stoppable(transform_while(original, &reflection, &|done| progress(0.5 * done)))?.at(mesh)?;
+        let joining = |done: f64| progress(0.5 + 0.5 * done);
+        let result = match ports.value(keep) {
+            true => stoppable(join_while([&**original, &image], &joining))?.at(mesh)?,
+            false => image,
+        };
         ports.write(mirrored, wire::Mesh::new(result.named(original.name())));
         Ok(())
     });

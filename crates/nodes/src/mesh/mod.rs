@@ -1,5 +1,16 @@
 //! Nodes that work on meshes.
 
+use maquette_geometry::mesh::TransformError;
+use maquette_graph::NodeError;
+
 pub(crate) mod join_meshes;
 pub(crate) mod mirror_mesh;
 pub(crate) mod transform_mesh;
+
+/// Being stopped is no failure of a port.
+pub(crate) fn stoppable<T>(made: Result<T, TransformError>) -> Result<Result<T, TransformError>, NodeError> {
+    match made {
+        Err(TransformError::Stopped) => Err(NodeError::Cancelled),
+        made => Ok(made),
+    }
+}

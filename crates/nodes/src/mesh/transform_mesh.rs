@@ -1,9 +1,10 @@
 //! **Transform mesh**: moves, turns and scales a mesh.
 
-use maquette_geometry::mesh::transform;
+use maquette_geometry::mesh::transform_while;
 use maquette_graph::{AtPort, NodeKind};
 
 use crate::affine::AffineInputs;
+use crate::mesh::stoppable;
 use crate::wire;
 
 pub(crate) fn kind() -> NodeKind {
@@ -17,7 +18,8 @@ pub(crate) fn kind() -> NodeKind {
     let affine = AffineInputs::declare(&mut node);
     let transformed = node.output::<wire::Mesh>("mesh", "The transformed mesh.");
     node.evaluate(move |ports| {
-        let moved = transform(&ports.read(mesh).0, &affine.read(ports)?).at(mesh)?;
+        let progress = ports.progress_callback();
+        let moved = stoppable(transform_while(&ports.read(mesh).0, &affine.read(ports)?, &progress))?.at(mesh)?;
         ports.write(transformed, wire::Mesh::new(moved));
         Ok(())
     });

@@ -31,29 +31,33 @@ pub(crate) fn kind() -> NodeKind {
     let curves = node.output::<wire::Curves>("curves", "The curves in order. Sections that are a point are left out.");
     node.evaluate(move |ports| {
         let stack = &ports.read(sections).0;
-        let made = match ports.choice(which) {
-            Which::Sections => across(stack, ports.count(every)),
-            Which::Rails => along(stack),
+        let made: Box<dyn Iterator<Item = Made>> = match ports.choice(which) {
+            Which::Sections => Box::new(across(stack, ports.count(every))),
+            Which::Rails => Box::new(along(stack)),
         };
-        ports.write(curves, wire::Curves(made.at(sections)?));
+        let mut all = Vec::new();
+        for curve in made {
+            ports.progress(0.5)?;
+            all.push(curve.at(sections)?);
+        }
+        ports.write(curves, wire::Curves(all));
         Ok(())
     });
     node
 }
 
-type Made = Result<Vec<Curve>, maquette_geometry::curve::CurveError>;
+type Made = Result<Curve, maquette_geometry::curve::CurveError>;
 
-fn across(stack: &Sections, every: usize) -> Made {
+fn across(stack: &Sections, every: usize) -> impl Iterator<Item = Made> {
     let last = stack.len() - 1;
     (0..stack.len())
-        .filter(|index| (index % every.max(1) == 0 || *index == last) && !stack.is_pole(*index))
+        .filter(move |index| (index % every.max(1) == 0 || *index == last) && !stack.is_pole(*index))
         .map(|index| Curve::new(format!("section {index}"), stack.section(index).to_vec(), stack.is_closed()))
-        .collect()
 }
 
-fn along(stack: &Sections) -> Made {
-    let rail = |(number, node): (usize, &usize)| {
+fn along(stack: &Sections) -> impl Iterator<Item = Made> {
+    let rail = move |(number, node): (usize, &usize)| {
         Curve::new(format!("rail {number}"), stack.iter().map(|section| section[*node]).collect(), false)
     };
-    stack.rails().iter().enumerate().map(rail).collect()
+    stack.rails().iter().enumerate().map(rail)
 }

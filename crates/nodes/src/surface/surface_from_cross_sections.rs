@@ -2,7 +2,7 @@
 //! Reference: thesis 4, Figure 6.11.
 
 use maquette_geometry::surface::{Cap, PoleShape, SkinError, SkinOptions, UParameter, skin};
-use maquette_graph::{AtPort, Choices, NodeError, NodeKind};
+use maquette_graph::{AtPort, Choices, NodeError, NodeKind, Unit};
 
 use crate::wire;
 
@@ -54,6 +54,8 @@ pub(crate) fn kind() -> NodeKind {
     let parameter = node.choice::<ParameterChoice>("parameter", "How the spline's knots are spaced.");
     let pole = node.choice::<PoleChoice>("pole", "Shape where a section is a point.");
     let mesh = node.output::<wire::Mesh>("mesh", "The surface; vertices of the sections are points of the sections.");
+    let faces = node.figure("faces", Unit::None, "Faces of the surface.");
+    let vertices = node.figure("vertices", Unit::None, "Vertices of the surface.");
     node.evaluate(move |ports| {
         let options = SkinOptions {
             rows: ports.count(rows),
@@ -77,7 +79,13 @@ pub(crate) fn kind() -> NodeKind {
             Err(SkinError::Cancelled) => Err(NodeError::Cancelled),
             skinned => skinned.at(sections),
         };
-        ports.write(mesh, wire::Mesh::new(skinned?));
+        let skinned = skinned?;
+        #[expect(clippy::cast_precision_loss, reason = "counts below 2^32")]
+        {
+            ports.figure(faces, skinned.polygon_count() as f64);
+            ports.figure(vertices, skinned.positions().len() as f64);
+        }
+        ports.write(mesh, wire::Mesh::new(skinned));
         Ok(())
     });
     node

@@ -1,5 +1,6 @@
 //! Where two chains of segments come closest.
 
+use super::{GoOn, SortError};
 use glam::DVec3;
 
 /// Segments that share one bounding box.
@@ -24,23 +25,30 @@ pub(super) struct Pair {
 }
 
 /// The pair of points at which two chains are closest; the first one found where several are. None for an empty chain.
-pub(super) fn closest_pair(first: &[Segment], second: &[Segment]) -> Option<Pair> {
+pub(super) fn closest_pair(first: &[Segment], second: &[Segment], go_on: &GoOn<'_>) -> Result<Option<Pair>, SortError> {
     let mut best: Option<Pair> = None;
-    visit(first, second, f64::INFINITY, |pair, limit| {
+    visit(first, second, f64::INFINITY, go_on, |pair, limit| {
         if best.is_none() || pair.distance < *limit {
             *limit = pair.distance;
             best = Some(pair);
         }
-    });
-    best
+    })?;
+    Ok(best)
 }
 
 /// Calls `f` with the closest points of every two segments that may be within `limit` metres, which `f` may lower.
 /// Boxes around blocks of segments keep this from looking at every two.
-pub(super) fn visit(first: &[Segment], second: &[Segment], limit: f64, mut f: impl FnMut(Pair, &mut f64)) {
+pub(super) fn visit(
+    first: &[Segment],
+    second: &[Segment],
+    limit: f64,
+    go_on: &GoOn<'_>,
+    mut f: impl FnMut(Pair, &mut f64),
+) -> Result<(), SortError> {
     let mut limit = limit;
     let boxes: Vec<(DVec3, DVec3)> = second.chunks(BLOCK).map(bounds).collect();
     for block in first.chunks(BLOCK) {
+        go_on()?;
         let around = bounds(block);
         for (other, other_around) in second.chunks(BLOCK).zip(&boxes) {
             let apart = (around.0 - other_around.1).max(other_around.0 - around.1).max(DVec3::ZERO);
@@ -54,6 +62,7 @@ pub(super) fn visit(first: &[Segment], second: &[Segment], limit: f64, mut f: im
             }
         }
     }
+    Ok(())
 }
 
 fn bounds(segments: &[Segment]) -> (DVec3, DVec3) {
@@ -108,9 +117,10 @@ mod tests {
         };
         let first = chain(|t| DVec3::new(t, (2.0 * t).sin(), 0.1 * t * t));
         let second = chain(|t| DVec3::new(t.cos() * 3.0, t - 5.0, 4.0 + t.sin()));
-        let found = closest_pair(&first, &second).unwrap();
+        let found = closest_pair(&first, &second, &|| Ok(())).unwrap().unwrap();
         let brute = first.iter().flat_map(|a| second.iter().map(|b| between(a, b).distance)).fold(f64::MAX, f64::min);
         assert_eq!(found.distance, brute);
-        assert_eq!(closest_pair(&first, &[]), None);
+        assert_eq!(closest_pair(&first, &[], &|| Ok(())), Ok(None));
+        assert_eq!(closest_pair(&first, &second, &|| Err(SortError::Stopped)), Err(SortError::Stopped));
     }
 }

@@ -1,6 +1,7 @@
 //! Cutting two curves where they meet.
 
 use super::closest_pair::{Segment, closest_pair, visit};
+use super::{GoOn, SortError};
 use crate::curve::{ArcLength, Curve};
 use glam::DVec3;
 
@@ -19,25 +20,31 @@ pub(super) struct Crossing {
 
 /// Where two curves come within `tolerance` metres of one another, farther than twice that from the ends of both. Of
 /// several places equally close (to 1e-6 of the tolerance), the one nearest to the middle of both curves.
-pub(super) fn crossing(first: &Curve, second: &Curve, tolerance: f64) -> Option<Crossing> {
+pub(super) fn crossing(
+    first: &Curve,
+    second: &Curve,
+    tolerance: f64,
+    go_on: &GoOn<'_>,
+) -> Result<Option<Crossing>, SortError> {
     let margin = 2.0 * tolerance;
     let inner = [inner_segments(first, margin), inner_segments(second, margin)];
-    let closest = closest_pair(&inner[0], &inner[1]).filter(|pair| pair.distance <= tolerance)?;
+    let closest = closest_pair(&inner[0], &inner[1], go_on)?.filter(|pair| pair.distance <= tolerance);
+    let Some(closest) = closest else { return Ok(None) };
     let halves = [first, second].map(|curve| 0.5 * ArcLength::of(curve).length());
     let off_middle =
         |arc_lengths: [f64; 2]| -> f64 { arc_lengths.iter().zip(halves).map(|(s, half)| (s / half - 1.0).abs()).sum() };
     let limit = closest.distance + 1e-6 * tolerance;
     let mut best = closest;
-    visit(&inner[0], &inner[1], limit, |pair, _| {
+    visit(&inner[0], &inner[1], limit, go_on, |pair, _| {
         if pair.distance <= limit && off_middle(pair.arc_lengths) < off_middle(best.arc_lengths) {
             best = pair;
         }
-    });
+    })?;
     // Places as close beside it (a stretch in common, or equal by symmetry) are averaged, so that the cut depends on
     // the direction of neither curve.
     let mut beside = (0.0, [0.0; 2]);
     let mut elsewhere = None;
-    visit(&inner[0], &inner[1], limit, |pair, _| {
+    visit(&inner[0], &inner[1], limit, go_on, |pair, _| {
         if pair.distance > limit {
         } else if pair.points[0].distance(best.points[0]) <= 4.0 * tolerance {
             beside.0 += 1.0;
@@ -45,20 +52,21 @@ pub(super) fn crossing(first: &Curve, second: &Curve, tolerance: f64) -> Option<
         } else {
             elsewhere.get_or_insert(0.5 * (pair.points[0] + pair.points[1]));
         }
-    });
+    })?;
     let arc_lengths = beside.1.map(|sum| sum / beside.0);
     // Closest where the inner part begins: they come closer still towards an end, and do not cross.
     let at_margin = |i: usize| arc_lengths[i].min(2.0 * halves[i] - arc_lengths[i]) <= margin * (1.0 + 1e-9);
     if at_margin(0) || at_margin(1) {
-        return None;
+        return Ok(None);
     }
     let feet = [ArcLength::of(first).point_at(arc_lengths[0]), ArcLength::of(second).point_at(arc_lengths[1])];
-    Some(Crossing { point: 0.5 * (feet[0] + feet[1]), arc_lengths, gap: feet[0].distance(feet[1]), elsewhere })
+    Ok(Some(Crossing { point: 0.5 * (feet[0] + feet[1]), arc_lengths, gap: feet[0].distance(feet[1]), elsewhere }))
 }
 
 /// Shortest distance between two curves, metres.
-pub(super) fn gap(first: &Curve, second: &Curve) -> f64 {
-    closest_pair(&inner_segments(first, 0.0), &inner_segments(second, 0.0)).map_or(f64::INFINITY, |pair| pair.distance)
+pub(super) fn gap(first: &Curve, second: &Curve, go_on: &GoOn<'_>) -> Result<f64, SortError> {
+    let closest = closest_pair(&inner_segments(first, 0.0), &inner_segments(second, 0.0), go_on)?;
+    Ok(closest.map_or(f64::INFINITY, |pair| pair.distance))
 }
 
 /// Cuts an open curve at an arc length into two that both end at `point`, exactly: the part before it, as drawn, and
@@ -129,6 +137,14 @@ fn inner_segments(curve: &Curve, margin: f64) -> Vec<Segment> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn crossing(first: &Curve, second: &Curve, tolerance: f64) -> Option<Crossing> {
+        super::crossing(first, second, tolerance, &|| Ok(())).unwrap()
+    }
+
+    fn gap(first: &Curve, second: &Curve) -> f64 {
+        super::gap(first, second, &|| Ok(())).unwrap()
+    }
 
     fn arch(along: DVec3, lift: f64) -> Curve {
         let points = (0..=400)

@@ -110,6 +110,9 @@ pub enum SortError {
     /// Rails that all lie along one line.
     #[error("the open curves lie along one line, so there is no way around them: draw them side by side")]
     NoAxis,
+    /// It was told to stop.
+    #[error("stopped")]
+    Stopped,
     /// A rail so short that it vanishes when its end is moved to where the rails meet.
     #[error("{curve} vanishes where the rails meet: draw it longer, or delete it")]
     RailVanishes {

@@ -105,6 +105,19 @@ struct Rail {
 /// # Errors
 /// [`SortError`] where there are too few or too many curves, they do not meet, or the pinned order does not name them.
 pub fn sort(curves: &[Curve], options: &SortOptions) -> Result<Sorted, SortError> {
+    sort_while(curves, options, &|| true)
+}
+
+/// Answers whether to go on.
+type GoOn<'a> = dyn Fn() -> Result<(), SortError> + 'a;
+
+/// The same, asking `go_on` every few milliseconds where curves have some ten thousand points.
+///
+/// # Errors
+/// As [`sort`], and [`SortError::Stopped`] where `go_on` answers `false`.
+pub fn sort_while(curves: &[Curve], options: &SortOptions, go_on: &dyn Fn() -> bool) -> Result<Sorted, SortError> {
+    let asked = || if go_on() { Ok(()) } else { Err(SortError::Stopped) };
+    asked()?;
     if !options.seam.is_finite() || options.seam == DVec3::ZERO {
         return Err(SortError::Seam { seam: options.seam });
     }
@@ -142,9 +155,10 @@ pub fn sort(curves: &[Curve], options: &SortOptions) -> Result<Sorted, SortError
     let mut decisions = vec![];
     let mut warnings = vec![];
     let rings: Vec<&Curve> = closed.iter().map(|(_, curve)| curve).collect();
-    let run::Run { mut rails, apex, halves } = run::run(open, &rings, size, &mut decisions, &mut warnings)?;
+    let run::Run { mut rails, apex, halves } = run::run(open, &rings, size, (&mut decisions, &mut warnings), &asked)?;
     if options.reverse_run {
         for rail in &mut rails {
+            asked()?;
             rail.curve = rail.curve.clone().reversed();
             rail.flipped = !rail.flipped;
         }
@@ -153,20 +167,24 @@ pub fn sort(curves: &[Curve], options: &SortOptions) -> Result<Sorted, SortError
     }
 
     let rings: Vec<&Curve> = closed.iter().map(|(_, curve)| curve).collect();
+    asked()?;
     let axis = Axis::of(&rails, rings.first().copied(), options.seam).ok_or(SortError::NoAxis)?;
     decisions.push(Decision::Axis { axis: axis.direction, source: axis.source });
     if axis.seam_replaced {
         decisions.push(Decision::SeamReplaced { seam: options.seam, used: axis.seam });
     }
+    asked()?;
     let middle = order::middle(&rails, &axis);
     let mut rails = order::automatic(rails, &middle);
     if halves {
         run::name_halves(&mut rails);
     }
+    asked()?;
     if !options.order.is_empty() {
         rails = order::pinned(rails, &options.order)?;
     }
     for (rail, drawn) in rails.iter().enumerate() {
+        asked()?;
         decisions.push(Decision::Rail {
             rail,
             curve: drawn.label.clone(),
@@ -181,6 +199,7 @@ pub fn sort(curves: &[Curve], options: &SortOptions) -> Result<Sorted, SortError
     let first_end = usize::from(closed.len() == 1 && options.reverse_run);
     let mut turned = Vec::with_capacity(closed.len());
     for (i, (label, curve)) in closed.into_iter().enumerate() {
+        asked()?;
         let station = &mut stations[first_end + i];
         let end = if first_end + i == 0 { rails[0].curve.start() } else { rails[0].curve.end() };
         let (oriented, reversed) = ring::counter_clockwise(curve, station.direction);
@@ -199,7 +218,7 @@ pub fn sort(curves: &[Curve], options: &SortOptions) -> Result<Sorted, SortError
         size,
         pinned: !options.order.is_empty(),
     };
-    warnings.extend(scene.warnings());
+    warnings.extend(scene.warnings(&asked)?);
     Ok(Sorted {
         rails: rails.into_iter().map(|rail| rail.curve).collect(),
         closed: turned.into_iter().map(|(_, curve)| curve).collect(),

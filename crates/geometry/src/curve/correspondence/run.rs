@@ -3,7 +3,7 @@
 use super::crossing::{crossing, cut, gap, move_end};
 use super::explain::metres;
 use super::order::mid_arc;
-use super::{Decision, MEETING, Rail, SortError};
+use super::{Decision, GoOn, MEETING, Rail, SortError};
 use crate::curve::{Curve, closest};
 use glam::DVec3;
 
@@ -24,12 +24,12 @@ pub(super) fn run(
     open: Vec<Rail>,
     rings: &[&Curve],
     size: f64,
-    decisions: &mut Vec<Decision>,
-    warnings: &mut Vec<String>,
+    (decisions, warnings): (&mut Vec<Decision>, &mut Vec<String>),
+    go_on: &GoOn<'_>,
 ) -> Result<Run, SortError> {
     let tolerance = MEETING * size;
     if let ([first, second], [] | [_]) = (&open[..], rings)
-        && let Some(found) = crossing(&first.curve, &second.curve, tolerance)
+        && let Some(found) = crossing(&first.curve, &second.curve, tolerance, go_on)?
         && rings.iter().all(|ring| starts_around(ring, [&first.curve, &second.curve], found.point))
     {
         decisions.push(Decision::Cut {
@@ -59,6 +59,7 @@ pub(super) fn run(
     let apex = match rings {
         [first, second, ..] => {
             for rail in &mut rails {
+                go_on()?;
                 let (start, end) = (rail.curve.start(), rail.curve.end());
                 let as_drawn = closest(first, start).distance + closest(second, end).distance;
                 flip_if(rail, closest(first, end).distance + closest(second, start).distance < as_drawn);
@@ -67,12 +68,13 @@ pub(super) fn run(
         }
         [ring] => {
             for rail in &mut rails {
+                go_on()?;
                 let (start, end) = (rail.curve.start(), rail.curve.end());
                 flip_if(rail, closest(ring, end).distance < closest(ring, start).distance);
             }
             meeting_point(&rails, tolerance)
         }
-        [] => run_alone(&mut rails, tolerance, decisions)?,
+        [] => run_alone(&mut rails, tolerance, decisions, go_on)?,
     };
     if let Some(at) = apex {
         let moved = rails.iter().map(|rail| rail.curve.end().distance(at)).fold(0.0, f64::max);
@@ -85,16 +87,23 @@ pub(super) fn run(
 }
 
 /// Makes rails run to the end at which all coincide, or else as the first one was drawn.
-fn run_alone(rails: &mut [Rail], tolerance: f64, decisions: &mut Vec<Decision>) -> Result<Option<DVec3>, SortError> {
+fn run_alone(
+    rails: &mut [Rail],
+    tolerance: f64,
+    decisions: &mut Vec<Decision>,
+    go_on: &GoOn<'_>,
+) -> Result<Option<DVec3>, SortError> {
     let (start, end) = (rails[0].curve.start(), rails[0].curve.end());
     let gathered = |at: DVec3| {
         let mut gathered = rails.to_vec();
         for rail in &mut gathered {
+            go_on()?;
             flip_if(rail, rail.curve.start().distance(at) < rail.curve.end().distance(at));
         }
-        meeting_point(&gathered, tolerance).map(|apex| (gathered, apex))
+        go_on()?;
+        Ok(meeting_point(&gathered, tolerance).map(|apex| (gathered, apex)))
     };
-    let (at_start, at_end) = (gathered(start), gathered(end));
+    let (at_start, at_end) = (gathered(start)?, gathered(end)?);
     if at_start.is_some() == at_end.is_some() {
         decisions.push(Decision::RunAsDrawn { curve: rails[0].label.clone() });
     }
@@ -104,7 +113,7 @@ fn run_alone(rails: &mut [Rail], tolerance: f64, decisions: &mut Vec<Decision>) 
     }
     if let [first, second] = rails {
         let names = (first.label.clone(), second.label.clone());
-        let gap = gap(&first.curve, &second.curve);
+        let gap = gap(&first.curve, &second.curve, go_on)?;
         return Err(if gap > tolerance {
             SortError::Apart { first: names.0, second: names.1, gap, allowed: tolerance }
         } else {

@@ -3,7 +3,7 @@
 use super::axis::Station;
 use super::explain::{listed, metres};
 use super::order::mid_arc;
-use super::{MEETING, Rail, SAME};
+use super::{GoOn, MEETING, Rail, SAME, SortError};
 use crate::curve::{Curve, closest};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -23,14 +23,17 @@ pub(super) struct Scene<'a> {
 }
 
 impl Scene<'_> {
-    pub(super) fn warnings(&self) -> Vec<String> {
+    pub(super) fn warnings(&self, go_on: &GoOn<'_>) -> Result<Vec<String>, SortError> {
         let mut warnings = vec![];
         for (side, verb) in ["start", "end"].into_iter().enumerate() {
-            self.far_from_ring(side, verb, &mut warnings);
+            self.far_from_ring(side, verb, &mut warnings, go_on)?;
+            go_on()?;
             self.out_of_order(side, verb, &mut warnings);
+            go_on()?;
         }
         self.turning(&mut warnings);
         self.coincident(&mut warnings);
+        go_on()?;
         if self.pinned {
             let middles = self.rails.iter().map(|rail| self.middle.angle(mid_arc(&rail.curve)) / TAU).collect();
             if !increases(&from_first(middles)) {
@@ -41,7 +44,7 @@ impl Scene<'_> {
                 );
             }
         }
-        warnings
+        Ok(warnings)
     }
 
     /// Start (side 0) or end (side 1) of a rail.
@@ -55,9 +58,16 @@ impl Scene<'_> {
         self.rails.iter().all(|rail| Self::end(rail, side).distance(first) <= SAME * self.size)
     }
 
-    fn far_from_ring(&self, side: usize, verb: &str, warnings: &mut Vec<String>) {
-        let Some((name, ring)) = self.rings[side] else { return };
+    fn far_from_ring(
+        &self,
+        side: usize,
+        verb: &str,
+        warnings: &mut Vec<String>,
+        go_on: &GoOn<'_>,
+    ) -> Result<(), SortError> {
+        let Some((name, ring)) = self.rings[side] else { return Ok(()) };
         for (i, rail) in self.rails.iter().enumerate() {
+            go_on()?;
             let distance = closest(ring, Self::end(rail, side)).distance;
             if distance > MEETING * self.size {
                 warnings.push(format!(
@@ -67,6 +77,7 @@ impl Scene<'_> {
                 ));
             }
         }
+        Ok(())
     }
 
     fn out_of_order(&self, side: usize, verb: &str, warnings: &mut Vec<String>) {

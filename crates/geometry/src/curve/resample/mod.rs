@@ -58,9 +58,15 @@ impl Resampling {
     }
 }
 
+/// Answers whether to go on.
+type GoOn<'a> = dyn Fn() -> Result<(), ResampleError> + 'a;
+
 /// Why a curve cannot be resampled.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ResampleError {
+    /// It was told to stop.
+    #[error("stopped")]
+    Stopped,
     /// Fewer points asked for than a curve has.
     #[error("curve \"{curve}\": {count} point(s) asked for, and it needs at least {needed}: raise the count")]
     CountTooSmall {
@@ -150,6 +156,19 @@ pub enum ResampleError {
 /// # Errors
 /// [`ResampleError`] where the amount or the angle is out of range, or the curve cannot be measured.
 pub fn resample(curve: &Curve, resampling: &Resampling) -> Result<Curve, ResampleError> {
+    resample_while(curve, resampling, &|| true)
+}
+
+/// The same, asking `go_on` every 1024 points.
+///
+/// # Errors
+/// As [`resample`], and [`ResampleError::Stopped`] where `go_on` answers `false`.
+pub fn resample_while(
+    curve: &Curve,
+    resampling: &Resampling,
+    go_on: &dyn Fn() -> bool,
+) -> Result<Curve, ResampleError> {
+    let asked = || if go_on() { Ok(()) } else { Err(ResampleError::Stopped) };
     let name = || curve.name().to_owned();
     let closed = curve.is_closed();
     if let Some(angle) = resampling.corner_angle.filter(|angle| !angle.is_finite() || *angle < 0.0) {
@@ -167,7 +186,7 @@ pub fn resample(curve: &Curve, resampling: &Resampling) -> Result<Curve, Resampl
         }
         _ => {}
     }
-    let stretches = Stretches::of(curve, resampling)
+    let stretches = Stretches::of(curve, resampling, &asked)?
         .ok_or_else(|| ResampleError::Unmeasurable { curve: name(), length: super::ArcLength::of(curve).length() })?;
     let lengths = stretches.lengths();
     let ends = usize::from(!closed);
@@ -186,6 +205,9 @@ pub fn resample(curve: &Curve, resampling: &Resampling) -> Result<Curve, Resampl
     let mut pressure = Vec::with_capacity(total);
     for (stretch, intervals) in intervals.into_iter().enumerate() {
         for i in 0..intervals {
+            if points.len().is_multiple_of(1024) {
+                asked()?;
+            }
             let (point, force) = stretches.at(stretch, i as f64 / intervals as f64);
             points.push(point);
             pressure.push(force);

@@ -1,6 +1,6 @@
 //! The stretches of a curve between points that stay, measured along its segments or along a spline.
 
-use super::Resampling;
+use super::{GoOn, ResampleError, Resampling};
 use crate::curve::{ArcLength, CubicSpline, Curve, SplineLength, chord_parameters};
 use glam::DVec3;
 
@@ -34,9 +34,9 @@ struct Path {
 }
 
 impl Stretches {
-    /// Cuts and measures a curve. None where it is too small or too large for that.
-    pub(super) fn of(curve: &Curve, resampling: &Resampling) -> Option<Self> {
-        let knots = distinct_knots(curve)?;
+    /// Cuts and measures a curve. None where it is too small or too large for that, an error where `go_on` says stop.
+    pub(super) fn of(curve: &Curve, resampling: &Resampling, go_on: &GoOn<'_>) -> Result<Option<Self>, ResampleError> {
+        let Some(knots) = distinct_knots(curve) else { return Ok(None) };
         let count = knots.len();
         let mut corners = resampling.corner_angle.map_or(vec![], |angle| corners(&knots, curve.is_closed(), angle));
         // Paths as runs of knot indices; behind the last knot of a closed curve they go on from its first.
@@ -55,7 +55,8 @@ impl Stretches {
         let mut stretches = Vec::with_capacity(runs.len() + 1);
         let mut before_first = None;
         for (path, (from, to)) in runs.into_iter().enumerate() {
-            let measured = Path::through((from..=to).map(|i| knots[i % count]).collect(), resampling.smooth, periodic)?;
+            let own = (from..=to).map(|i| knots[i % count]).collect();
+            let Some(measured) = Path::through(own, resampling.smooth, periodic, go_on)? else { return Ok(None) };
             let length = measured.lengths[to - from];
             let mut first = (knots[from % count], 0.0);
             // The first point of a closed curve stays even where the path between two corners runs through it.
@@ -71,7 +72,7 @@ impl Stretches {
             stretches.rotate_right(1);
             stretches.push(last);
         }
-        Some(Self { paths, stretches })
+        Ok(Some(Self { paths, stretches }))
     }
 
     /// Length of each stretch, metres.
@@ -90,23 +91,32 @@ impl Stretches {
 }
 
 impl Path {
-    fn through(knots: Vec<Knot>, smooth: bool, periodic: bool) -> Option<Self> {
+    fn through(
+        knots: Vec<Knot>,
+        smooth: bool,
+        periodic: bool,
+        go_on: &GoOn<'_>,
+    ) -> Result<Option<Self>, ResampleError> {
         let mut points: Vec<DVec3> = knots.iter().map(|knot| knot.0).collect();
         let parameters = chord_parameters(&points, false);
         let spline = if !smooth {
             None
-        } else if periodic {
-            points.pop();
-            Some(SplineLength::of(CubicSpline::periodic(parameters.clone(), points).ok()?))
         } else {
-            Some(SplineLength::of(CubicSpline::natural(parameters.clone(), points).ok()?))
+            let through = if periodic {
+                points.pop();
+                CubicSpline::periodic(parameters.clone(), points)
+            } else {
+                CubicSpline::natural(parameters.clone(), points)
+            };
+            let Ok(through) = through else { return Ok(None) };
+            Some(SplineLength::of_while(through, go_on)?)
         };
         let lengths = match &spline {
             None => parameters,
             Some(spline) => (0..knots.len()).map(|knot| spline.length_at_point(knot)).collect(),
         };
         let length = lengths[lengths.len() - 1];
-        (length.is_finite() && length > 0.0).then_some(Self { knots, lengths, spline })
+        Ok((length.is_finite() && length > 0.0).then_some(Self { knots, lengths, spline }))
     }
 
     fn at(&self, s: f64) -> Knot {

@@ -9,9 +9,13 @@ use gltf_json::mesh;
 use primitive::{Attributes, TriangleSoup};
 
 use super::ReadError;
+use super::pace::Pace;
 use crate::mesh::Mesh;
 
 const FORMAT: &str = "glTF";
+
+/// Triangles between two questions whether to go on.
+const TRIANGLES: usize = 1 << 14;
 
 /// Most indices and positions that are read, counted again wherever they are used again: a small file can show one large
 /// mesh through many nodes.
@@ -31,6 +35,21 @@ const MAX_ENTRIES: usize = 100_000_000;
 /// [`ReadError`] where the file is empty or damaged, points into other files, uses sparse or compressed data or an
 /// extension it cannot be read without, has a position that is not finite, or has no triangle.
 pub fn read(bytes: &[u8]) -> Result<Vec<Mesh>, ReadError> {
+    read_while(bytes, &|_| true)
+}
+
+/// The same, calling `progress` with the share of the file's data that is read; where meshes are shown several times,
+/// with 1 from then on.
+///
+/// # Errors
+/// As [`read`], and [`ReadError::Stopped`] where `progress` answers `false`.
+pub fn read_while(bytes: &[u8], progress: &dyn Fn(f64) -> bool) -> Result<Vec<Mesh>, ReadError> {
+    // A triangle takes about 36 bytes of indices and vertices.
+    let whole = bytes.len() / 36 + 1;
+    let shares = |done: f64| progress(done.min(1.0));
+    let mut pace = Pace::new(&shares, whole, TRIANGLES);
+    pace.at(0)?;
+    let mut read = 0;
     let container = Container::open(bytes)?;
     let root = &container.root;
     let mut meshes = Vec::new();
@@ -56,7 +75,7 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Mesh>, ReadError> {
                     remedy: "simplify the meshes, or export fewer copies of them",
                 });
             }
-            soup.add(&container, &attributes, &name, &place)?;
+            read = soup.add(&container, &attributes, (&name, &place), read, &mut pace)?;
         }
         meshes.extend(soup.into_mesh(&name)?);
     }

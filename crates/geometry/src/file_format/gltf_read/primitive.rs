@@ -11,6 +11,7 @@ use gltf_json::{Accessor, Index};
 use super::container::{Container, Items};
 use super::{FORMAT, Layout, malformed};
 use crate::file_format::ReadError;
+use crate::file_format::pace::Pace;
 use crate::mesh::Mesh;
 
 /// Where a primitive of triangles keeps its data.
@@ -100,14 +101,16 @@ impl TriangleSoup {
         }
     }
 
-    /// Adds the triangles of a primitive. `name` is the mesh's and `place` the primitive's, for messages.
+    /// Adds the triangles of a primitive to those read before, and gives the number of all. `name` is the mesh's and
+    /// `place` the primitive's, for messages.
     pub(super) fn add(
         &mut self,
         container: &Container,
         attributes: &Attributes,
-        name: &str,
-        place: &str,
-    ) -> Result<(), ReadError> {
+        (name, place): (&str, &str),
+        before: usize,
+        pace: &mut Pace<'_>,
+    ) -> Result<usize, ReadError> {
         let positions = attributes.positions(container, place)?;
         let indices = attributes.indices(container, place)?;
         let count = attributes.triangle_count(indices.as_ref().map_or(positions.count, |i| i.count), place)?;
@@ -140,6 +143,7 @@ impl TriangleSoup {
         }
 
         for t in 0..count {
+            pace.at(before + t)?;
             let mut corners = attributes.layout.triangle(t).map(|at| match &indices {
                 Some(indices) => indices.index(at) as usize,
                 None => at,
@@ -182,7 +186,7 @@ impl TriangleSoup {
                 }
             }
         }
-        Ok(())
+        Ok(before + count)
     }
 
     /// The shared vertex at a position.

@@ -5,7 +5,7 @@ mod read;
 mod write;
 
 pub use material::material_library_bytes;
-pub use read::read;
+pub use read::{read, read_while};
 pub use write::write;
 
 const FORMAT: &str = "OBJ";

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::FORMAT;
 use crate::file_format::ReadError;
+use crate::file_format::pace::Pace;
 use crate::mesh::Mesh;
 use crate::mesh::measure::vector_area;
 
@@ -18,15 +19,28 @@ use crate::mesh::measure::vector_area;
 /// [`ReadError`] where the file is empty or has no polygon, and, with the number of the line, where a number or index
 /// is wrong.
 pub fn read(bytes: &[u8]) -> Result<Vec<Mesh>, ReadError> {
+    read_while(bytes, &|_| true)
+}
+
+/// The same, calling `progress` with the fraction done.
+///
+/// # Errors
+/// As [`read`], and [`ReadError::Stopped`] where `progress` answers `false`.
+pub fn read_while(bytes: &[u8], progress: &dyn Fn(f64) -> bool) -> Result<Vec<Mesh>, ReadError> {
     if bytes.is_empty() {
         return Err(ReadError::Empty { format: FORMAT });
     }
     let text = String::from_utf8_lossy(bytes);
+    let mut pace = Pace::new(progress, 2 * bytes.len(), BYTES);
+    pace.at(0)?;
+    let mut read = 0;
     let has_objects = text.lines().any(|line| line.split_whitespace().next() == Some("o"));
     let mut file = File::default();
     let mut continued = String::new();
     let mut first_line = 1;
     for (index, line) in text.lines().enumerate() {
+        pace.at(read)?;
+        read += line.len() + 1;
         if continued.is_empty() {
             first_line = index + 1;
         }
@@ -47,8 +61,15 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Mesh>, ReadError> {
     if !continued.is_empty() {
         file.take(&continued, first_line, has_objects)?;
     }
-    let meshes = file.objects.iter().filter(|object| !object.lines.is_empty()).map(|object| file.mesh(object));
-    let meshes = meshes.collect::<Result<Vec<Mesh>, ReadError>>()?;
+    let whole: usize = file.objects.iter().map(|object| object.corners.len()).sum();
+    let mut pace = Pace::new(progress, 2 * whole, CORNERS);
+    let mut done = whole;
+    let mut used = Used::new(file.positions.len());
+    let mut meshes = Vec::new();
+    for object in file.objects.iter().filter(|object| !object.lines.is_empty()) {
+        meshes.push(file.mesh(object, &mut used, &mut |corners| pace.at(done + corners))?);
+        done += object.corners.len();
+    }
     if meshes.is_empty() {
         return Err(ReadError::Nothing {
             format: FORMAT,
@@ -57,6 +78,43 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Mesh>, ReadError> {
         });
     }
     Ok(meshes)
+}
+
+/// Bytes of text between two questions whether to go on.
+const BYTES: usize = 1 << 18;
+
+/// Corners between two questions whether to go on.
+const CORNERS: usize = 1 << 16;
+
+/// Which vertices of the file an object uses, and their places among them.
+struct Used {
+    /// The number of the object that used the vertex last.
+    stamps: Vec<u32>,
+    places: Vec<u32>,
+    object: u32,
+}
+
+impl Used {
+    fn new(vertices: usize) -> Self {
+        Self { stamps: vec![0; vertices], places: vec![0; vertices], object: 0 }
+    }
+
+    /// The vertices of these corners in the order of the file; their places are known from then on.
+    fn vertices(&mut self, corners: &[Corner]) -> Vec<usize> {
+        // There are no more objects than lines, and no more lines than bytes.
+        self.object = self.object.wrapping_add(1);
+        let mut vertices = Vec::new();
+        for corner in corners {
+            if std::mem::replace(&mut self.stamps[corner.vertex], self.object) != self.object {
+                vertices.push(corner.vertex);
+            }
+        }
+        vertices.sort_unstable();
+        for (place, vertex) in vertices.iter().enumerate() {
+            self.places[*vertex] = place as u32;
+        }
+        vertices
+    }
 }
 
 /// Indices of a corner into the file's vertices, UVs and normals, from 0.
@@ -163,11 +221,18 @@ impl File {
         Ok(())
     }
 
-    fn mesh(&self, object: &Object) -> Result<Mesh, ReadError> {
+    /// `pace` is told how many corners are done.
+    fn mesh(
+        &self,
+        object: &Object,
+        used: &mut Used,
+        pace: &mut dyn FnMut(usize) -> Result<(), ReadError>,
+    ) -> Result<Mesh, ReadError> {
         let starts = std::iter::once(0).chain(object.ends.iter().copied());
         let polygons = || starts.clone().zip(object.ends.iter().copied()).map(|(start, end)| start..end);
 
         for (polygon, &line) in polygons().zip(&object.lines) {
+            pace(polygon.start / 2)?;
             for corner in &object.corners[polygon] {
                 check_index("vertex", corner.vertex, self.positions.len(), line)?;
                 check_index("UV", corner.uv.unwrap_or(0), corner.uv.map_or(1, |_| self.uvs.len()), line)?;
@@ -180,16 +245,13 @@ impl File {
             }
         }
 
-        let mut used: Vec<usize> = object.corners.iter().map(|corner| corner.vertex).collect();
-        used.sort_unstable();
-        used.dedup();
-        let positions: Vec<DVec3> = used.iter().map(|&vertex| self.positions[vertex]).collect();
-        // Every vertex of a corner is in the list.
-        let local = |vertex: usize| used.binary_search(&vertex).unwrap_or(0) as u32;
-        let indices = polygons()
-            .map(|polygon| object.corners[polygon].iter().map(|corner| local(corner.vertex)).collect::<Vec<u32>>());
+        let vertices = used.vertices(&object.corners);
+        pace(object.corners.len() / 2)?;
+        let positions: Vec<DVec3> = vertices.iter().map(|&vertex| self.positions[vertex]).collect();
+        let corners: Vec<u32> = object.corners.iter().map(|corner| used.places[corner.vertex]).collect();
+        let counts = polygons().map(|polygon| polygon.len());
         let failed = |source| ReadError::Mesh { name: object.name.clone(), source };
-        let mut mesh = Mesh::new(positions, indices).map_err(failed)?.named(&object.name);
+        let mut mesh = Mesh::from_corners(positions, corners, counts).map_err(failed)?.named(&object.name);
 
         let uvs: Option<Vec<DVec2>> = object.corners.iter().map(|corner| Some(self.uvs[corner.uv?])).collect();
         if let Some(uvs) = uvs {
@@ -198,6 +260,7 @@ impl File {
         if object.corners.iter().all(|corner| corner.normal.is_some()) {
             let mut normals = Vec::with_capacity(object.corners.len());
             for polygon in polygons() {
+                pace((object.corners.len() + polygon.start) / 2)?;
                 let own = || vector_area(object.corners[polygon.clone()].iter().map(|c| self.positions[c.vertex]));
                 for corner in &object.corners[polygon.clone()] {
                     let given = corner.normal.map_or(DVec3::ZERO, |normal| self.normals[normal]);

@@ -1,0 +1,132 @@
+//! Every node that can take long asks often enough whether to go on, and stops when told to: counted in calls, since
+//! times depend on the machine (`cargo bench --bench silence` measures those).
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics fails")]
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use glam::DVec3;
+use maquette_geometry::curve::Curve;
+use maquette_geometry::file_format::curves_json;
+use maquette_geometry::mesh::Mesh;
+use maquette_geometry::sections::Sections;
+use maquette_graph::harness::{Harness, TrialError};
+use maquette_graph::{Catalogue, Literal, Vector};
+use maquette_nodes::wire;
+
+fn ring(name: &str, points: usize, radius: f64, height: f64) -> Curve {
+    let at = |k: usize| {
+        let angle = std::f64::consts::TAU * k as f64 / points as f64;
+        DVec3::new(radius * angle.cos(), height, -radius * angle.sin())
+    };
+    Curve::new(name, (0..points).map(at).collect(), true).unwrap()
+}
+
+fn rails(count: usize, points: usize) -> wire::Curves {
+    let rail = |k: usize| {
+        let angle = std::f64::consts::TAU * k as f64 / count as f64;
+        let at = |i: usize| DVec3::new(angle.cos(), 2.0 * i as f64 / (points - 1) as f64, -angle.sin());
+        Curve::new(format!("rail {k}"), (0..points).map(at).collect(), false).unwrap()
+    };
+    wire::Curves((0..count).map(rail).collect())
+}
+
+/// Two arches that cross, of so many points each.
+fn arches(points: usize) -> wire::Curves {
+    let arch = |turn: bool| {
+        let at = |k: usize| {
+            let t = 2.0 * k as f64 / (points - 1) as f64 - 1.0;
+            if turn { DVec3::new(0.0, 1.0 - t * t, t) } else { DVec3::new(t, 1.0 - t * t, 0.0) }
+        };
+        Curve::new("", (0..points).map(at).collect(), false).unwrap()
+    };
+    wire::Curves(vec![arch(false), arch(true)])
+}
+
+fn net(side: u32) -> Mesh {
+    let edge = side + 1;
+    let points = (0..edge * edge).map(|k| DVec3::new(f64::from(k % edge), 0.0, f64::from(k / edge)));
+    let quads = (0..side * side).map(|k| {
+        let corner = (k / side) * edge + k % side;
+        [corner, corner + edge, corner + edge + 1, corner + 1]
+    });
+    Mesh::new(points.collect(), quads).unwrap()
+}
+
+fn obj(mesh: &Mesh) -> Vec<u8> {
+    let vertices = mesh.positions().iter().map(|p| format!("v {} {} {}\n", p.x, p.y, p.z));
+    let faces = mesh.polygons().map(|p| format!("f {} {} {} {}\n", p[0] + 1, p[1] + 1, p[2] + 1, p[3] + 1));
+    vertices.chain(faces).collect::<String>().into_bytes()
+}
+
+/// Runs the node whole, then again, told to stop at the first call, in the middle and at the last: it must not call
+/// again after that.
+fn stops(catalogue: &Catalogue, kind: &str, least_calls: usize, input: impl for<'a> Fn(Harness<'a>) -> Harness<'a>) {
+    let kind = catalogue.kind(kind).unwrap();
+    let whole = input(Harness::new(kind)).run().unwrap_or_else(|error| panic!("{kind:?}: {error}"));
+    let calls = whole.progress.len();
+    assert!(calls >= least_calls, "{kind:?} asks {calls} times, fewer than {least_calls}");
+    assert!(whole.progress.iter().all(|done| (0.0..=1.0).contains(done)), "{kind:?}: {:?}", whole.progress);
+    for stop_at in [0, calls / 2, calls - 1] {
+        let asked = AtomicUsize::new(0);
+        let go_on = |_: f64| asked.fetch_add(1, Ordering::Relaxed) < stop_at;
+        let stopped = input(Harness::new(kind)).while_progress(go_on).run();
+        match stopped {
+            Err(TrialError::Cancelled(told)) => {
+                assert!(
+                    told.len() <= stop_at + 1,
+                    "{kind:?} goes on {} calls after the stop",
+                    told.len() - stop_at - 1
+                );
+            }
+            other => panic!("{kind:?}, stopped at call {stop_at} of {calls}: {:?}", other.map(|trial| trial.values)),
+        }
+    }
+}
+
+#[test]
+fn nodes_on_curves() {
+    let catalogue = maquette_nodes::catalogue().unwrap();
+    let many = rails(4, 20_000);
+    stops(&catalogue, "resample", 4 * 40, |h| h.give("curves", many.clone()).set("count", Literal::Integer(20_000)));
+    stops(&catalogue, "smooth", 4, |h| h.give("curves", many.clone()));
+    stops(&catalogue, "mirror", 4, |h| h.give("curves", many.clone()));
+    stops(&catalogue, "transform", 4, |h| h.give("curves", many.clone()).give("rotate", Vector([1.0, 2.0, 3.0])));
+    let mut tube = rails(8, 2_000).0;
+    tube.extend([ring("a", 20_000, 1.0, 0.0), ring("b", 20_000, 1.0, 2.0)]);
+    stops(&catalogue, "sort", 8 * 3, |h| h.give("curves", wire::Curves(tube.clone())));
+    // One question for each block of 16 segments.
+    stops(&catalogue, "sort", 20_000 / 16, |h| h.give("curves", arches(20_000)));
+    let json = curves_json::write(&many.0);
+    stops(&catalogue, "import-curves", json.len() >> 17, |h| h.file("file", "a.json", json.clone()));
+}
+
+#[test]
+fn nodes_on_shapes() {
+    let catalogue = maquette_nodes::catalogue().unwrap();
+    stops(&catalogue, "detail-generator", 100, |h| {
+        h.give("rails", rails(4, 100)).set("sections", Literal::Integer(100)).set("nodes", Literal::Integer(100))
+    });
+    let row = |k: usize| ring("", 100, 1.0, 0.02 * k as f64).points().to_vec();
+    let stack = wire::Sections(Sections::new((0..100).map(row).collect(), true, vec![]).unwrap());
+    stops(&catalogue, "deform-by-cross-section", 40, |h| {
+        h.give("sections", stack.clone())
+            .give("contour", wire::Curve(ring("waist", 100, 0.8, 1.0)))
+            .set("before", Literal::Number(0.5))
+            .set("after", Literal::Number(0.5))
+    });
+    stops(&catalogue, "surface-from-cross-sections", 200, |h| h.give("sections", stack.clone()));
+    stops(&catalogue, "curves-from-sections", 100, |h| h.give("sections", stack.clone()));
+}
+
+#[test]
+fn nodes_on_meshes() {
+    let catalogue = maquette_nodes::catalogue().unwrap();
+    let mesh = net(400);
+    let text = obj(&mesh);
+    stops(&catalogue, "import-mesh", text.len() >> 19, |h| h.file("file", "a.obj", text.clone()));
+    let mesh = wire::Mesh::new(mesh);
+    stops(&catalogue, "transform-mesh", 4, |h| h.give("mesh", mesh.clone()));
+    stops(&catalogue, "mirror-mesh", 8, |h| h.give("mesh", mesh.clone()).set("keep", Literal::Boolean(true)));
+    stops(&catalogue, "join-meshes", 4, |h| h.give("a", mesh.clone()).give("b", mesh.clone()));
+    stops(&catalogue, "mesh-out", 3 * 400 * 400 / 65_536 + 8, |h| h.give("mesh", mesh.clone()).examine());
+}
