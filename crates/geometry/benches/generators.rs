@@ -94,12 +94,14 @@ fn dense(mut rows: Vec<Vec<f64>>, mut right: Vec<f64>) -> Vec<f64> {
         let pivot = (k..n).max_by(|a, b| rows[*a][k].abs().total_cmp(&rows[*b][k].abs())).unwrap_or(k);
         rows.swap(k, pivot);
         right.swap(k, pivot);
-        for i in k + 1..n {
-            let factor = rows[i][k] / rows[k][k];
-            for j in k..n {
-                rows[i][j] -= factor * rows[k][j];
+        let (above, below) = rows.split_at_mut(k + 1);
+        let pivot_row = &above[k];
+        for (i, row) in below.iter_mut().enumerate() {
+            let factor = row[k] / pivot_row[k];
+            for (entry, of_pivot) in row[k..].iter_mut().zip(&pivot_row[k..]) {
+                *entry -= factor * of_pivot;
             }
-            right[i] -= factor * right[k];
+            right[k + 1 + i] -= factor * right[k];
         }
     }
     for k in (0..n).rev() {

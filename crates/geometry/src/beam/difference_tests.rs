@@ -296,3 +296,52 @@ fn what_nothing_holds_is_refused() {
     let solved = beam.and_then(|beam| beam.solve(&OpenValues { right_load: 1.0, ..OpenValues::ends(0.0, 0.0) }));
     assert_eq!(solved, Err(BeamError::NotSolvable));
 }
+
+proptest::proptest! {
+    #[test]
+    fn turned_around_mirrored_and_added_up(
+        nodes in 6_usize..120,
+        at in proptest::collection::vec((0_usize..120, -10.0..10.0_f64), 1..9),
+        ends in (0_usize..3, 0_usize..3),
+        given in proptest::collection::vec(-10.0..10.0_f64, 6),
+        ratio in 0.1..1e4_f64,
+    ) {
+        let mut pins: Vec<(usize, f64)> = at.iter().map(|(pin, value)| (1 + pin % (nodes - 2), *value)).collect();
+        pins.sort_by_key(|pin| pin.0);
+        pins.dedup_by_key(|pin| pin.0);
+        let conditions = [Clamped, Natural, Free];
+        let solve = |back: bool, scale: f64| {
+            let (mut at, mut values): (Vec<usize>, Vec<f64>) = pins.iter().map(|(at, value)| (*at, value * scale)).unzip();
+            let (mut left, mut right) = (conditions[ends.0], conditions[ends.1]);
+            let mut g: Vec<f64> = given.iter().map(|value| value * scale).collect();
+            let mut forces: Vec<f64> = (0..nodes).map(|i| scale * 100.0 * (i as f64).sin()).collect();
+            if back {
+                at.iter_mut().for_each(|node| *node = nodes - 1 - *node);
+                values.reverse();
+                at.reverse();
+                (left, right) = (right, left);
+                g = vec![g[1], g[0], -g[3], -g[2], g[5], g[4]];
+                forces.reverse();
+            }
+            OpenBeam::new(nodes, &at, left, right, stiffness(ratio))
+                .unwrap()
+                .solve(&OpenValues {
+                    left: g[0],
+                    right: g[1],
+                    left_tangent: g[2],
+                    right_tangent: g[3],
+                    left_load: g[4],
+                    right_load: g[5],
+                    pins: &values,
+                    forces: &forces,
+                })
+                .unwrap()
+        };
+        let (curve, turned, doubled) = (solve(false, 1.0), solve(true, 1.0), solve(false, -2.0));
+        let largest = curve.iter().fold(10.0_f64, |m, d| m.max(d.abs()));
+        for i in 0..nodes {
+            proptest::prop_assert!((curve[i] - turned[nodes - 1 - i]).abs() < 1e-11 * largest);
+            proptest::prop_assert!((2.0 * curve[i] + doubled[i]).abs() < 1e-11 * largest);
+        }
+    }
+}

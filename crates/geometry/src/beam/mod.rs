@@ -5,6 +5,9 @@
 //! `f` is the force of the differential equation: positive `f` pushes towards positive `d`. Every solver factors
 //! once, for its nodes, pins and stiffness, and then solves for any values in O(n). The scheme (thesis 5.8, with the
 //! right side `h^4 f`) is of second order in `h`; its linear system is solved to round-off for any permitted size.
+//!
+//! [`ClosedBeam`] and [`OpenBeam`] stand on one system of equations: pins, and ends that are clamped, natural or free.
+//! [`OpenCardinals`] are the functions of which all their curves are sums; [`TensionSpline`] is the exact solution.
 
 mod banded;
 mod cardinals;

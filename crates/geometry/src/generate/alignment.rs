@@ -21,7 +21,6 @@ const LEAST_COSINE: f64 = 0.2;
 #[derive(Clone, Debug)]
 pub(super) struct Alignment<'a> {
     borders: [Border<'a>; 2],
-    pub(super) notes: Vec<String>,
 }
 
 /// One border, its sense and its start.
@@ -44,20 +43,13 @@ impl<'a> Alignment<'a> {
         let way = (end.centre - start.centre).normalize_or_zero();
         start.face(start.leading()?, way, None);
         end.face(-end.leading()?, way, Some(start.axis));
-        let mut notes = Vec::new();
-        if start.sense != end.sense {
-            let (one, other) = (start.given.curve.name(), end.given.curve.name());
-            notes.push(format!(
-                "Borders \"{one}\" and \"{other}\" are drawn in opposite senses: one is walked backwards."
-            ));
-        }
         let offsets = |border: &Border<'_>, turn: &dyn Fn(DVec3) -> DVec3| -> Vec<DVec3> {
             (0..SAMPLES).map(|k| turn(border.point(k as f64 / SAMPLES as f64) - border.centre)).collect()
         };
         let turn = transport(end.centre - start.centre, start.axis, end.axis);
         let (from, to) = (offsets(&start, &turn), offsets(&end, &|v| v));
         end.origin = start_share(&from, &to) + twist / TAU;
-        Ok(Self { borders: [start, end], notes })
+        Ok(Self { borders: [start, end] })
     }
 
     /// Corresponding points at the share `t` of both, each with the direction from its surface into the blend.

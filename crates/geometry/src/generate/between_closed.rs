@@ -10,13 +10,13 @@ use crate::curve::Curve;
 ///
 /// `rails` are two or more open curves in counter-clockwise order, each from `start` to `end`; the closed curves run
 /// counter-clockwise too. The feet of the rails cut both into pieces. A generator at the share `s` of the way between
-/// two rails runs from a point of the piece of `start` to one of the piece of `end`. Its weight is [`Weights::at`] of
+/// two rails runs from a point of the piece of `start` to one of the piece of `end`. Its weight is [`Weights::at`](super::Weights::at) of
 /// `s`; smooth weights also walk the closed curves at a speed that does not jump at the feet, so that the surface does
 /// not crease along the rails; linear weights use plain shares of the arc length between two feet, as printed.
 ///
 /// In the thesis the generator is the beam curve bent by the blended sculpting forces of both rails
-/// ([`blend_generators`], [`Frame::Fixed`]). Forces of rails a quarter of a turn apart partly cancel: of a round belly
-/// drawn by four rails 0.71 are left between them. [`Frame::Turning`] turns what the rails add to the loft between the
+/// ([`blend_generators`](super::blend_generators), [`Frame::Fixed`](super::Frame::Fixed)). Forces of rails a quarter of a turn apart partly cancel: of a round belly
+/// drawn by four rails 0.71 are left between them. [`Frame::Turning`](super::Frame::Turning) turns what the rails add to the loft between the
 /// closed curves about the axis as these turn, apart from a shift that all rails share: surfaces of revolution and tubes
 /// bent sideways stay round. The axis goes over from the normal of the one to that of the other closed curve. Where a
 /// closed curve turns back by more than 3 degrees as seen from its centre, both enclose next to no area, or they face

@@ -91,7 +91,7 @@ pub fn blend(
     let rails = Vec::new();
     Ok(Generated {
         sections: Sections::new(rows, true, rails)?,
-        notes: alignment.notes,
+        notes: Vec::new(),
         warnings: Vec::new(),
         largest_gap: 0.0,
         gaps: Vec::new(),

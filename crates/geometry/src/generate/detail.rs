@@ -62,7 +62,7 @@ impl Detail<'_> {
                     (0 | 1, 2.., 0) | (1, 0, 2..) => "draw at least 2 rails",
                     (_, 1, 0) => "a sheet needs at least 2 profiles",
                     (0, 0, 1) => "draw one rail across the closed profile, or several to a point",
-                    (0, 0, _) => "between several closed profiles draw rails",
+                    (0, 0, 3..) => "between several closed profiles draw rails",
                     _ => "without profiles give the 4 outlines of two views, or 3 or 4 borders that meet at their ends",
                 };
                 let what =
@@ -120,6 +120,8 @@ impl Detail<'_> {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use glam::DVec3;
 
     use super::super::test_shapes::{closed, cuff, dome, mouth, open, sphere_patch};
@@ -177,7 +179,7 @@ mod tests {
         let rings = [ring(0.0), ring(0.2)];
         let (up, down) = (vec![DVec3::Y; 100], vec![-DVec3::Y; 100]);
         let beyond = [Some(Neighbour::Directions(&up)), Some(Neighbour::Directions(&down))];
-        let arc = open("arc", 40, |t| DVec3::new(0.1 * (3.1416 * t).cos(), 0.1 * (3.1416 * t).sin(), 0.0));
+        let arc = open("arc", 40, |t| DVec3::new(0.1 * (PI * t).cos(), 0.1 * (PI * t).sin(), 0.0));
         let none = Detail::default();
         for (detail, method) in [
             (Detail { rails: &tube, ..none }, Method::TwoViews),

@@ -124,12 +124,7 @@ impl<'a> Edge<'a> {
             }
             let slope = end_slopes(points)[usize::from(side == Which::End)];
             let [along, across] = edge.axes(*offset, feet.points[rail])?;
-            // Least squares in the neighbour's tangent plane.
-            let cosine = along.dot(across);
-            let (a, b) = (slope.dot(along), slope.dot(across));
-            let rest = 1.0 - cosine * cosine;
-            let [mut speed_along, mut speed_across] =
-                if rest > 1e-6 { [(a - cosine * b) / rest, (b - cosine * a) / rest] } else { [0.0, b] };
+            let [mut speed_along, mut speed_across] = in_plane(slope, [along, across]);
             let speed = slope.length();
             let bent = (slope - along * speed_along - across * speed_across).length().atan2(speed).to_degrees();
             let (what, name) = (across_it.name(), border.name());
@@ -166,13 +161,22 @@ impl<'a> Edge<'a> {
     }
 
     /// Unit directions along the border, and across it in the sense of the generators.
-    fn axes(&self, offset: f64, point: DVec3) -> Result<[DVec3; 2], GenerateError> {
+    pub(super) fn axes(&self, offset: f64, point: DVec3) -> Result<[DVec3; 2], GenerateError> {
         let s = self.origin + offset;
         let reach = REACH * self.arc.length();
         let along = (self.arc.point_at(s + reach) - self.arc.point_at(s - reach)).normalize_or_zero();
         let across = self.neighbour.direction(self.border, &self.arc, s, point)?;
         Ok([along, if self.side == Which::End { -across } else { across }])
     }
+}
+
+/// Shares of two unit directions in what is left of `v` in their plane (least squares); of the second alone where both
+/// are one.
+pub(super) fn in_plane(v: DVec3, [along, across]: [DVec3; 2]) -> [f64; 2] {
+    let cosine = along.dot(across);
+    let (a, b) = (v.dot(along), v.dot(across));
+    let rest = 1.0 - cosine * cosine;
+    if rest > 1e-6 { [(a - cosine * b) / rest, (b - cosine * a) / rest] } else { [0.0, b] }
 }
 
 fn chord(points: &[DVec3]) -> f64 {

@@ -1,5 +1,7 @@
 //! A patch over a network of border curves.
 
+use glam::DVec3;
+
 use super::neighbour::Neighbour;
 use super::sweep::{Drawing, sweep};
 use super::{GenerateError, GenerateOptions, Generated};
@@ -33,13 +35,10 @@ pub fn network(
         return Err(GenerateError::RailIsClosed { rail, name: curve.name().to_owned() });
     }
     super::check_size(borders.iter().chain(rails))?;
-    let (chain, order) = loop_of(borders, options.snap)?;
-    let neighbour = |place: usize| neighbours.get(order[place]).copied().flatten().map(|beyond| (beyond, order[place]));
-    // A curve that is run backwards takes its neighbour's directions with it.
-    let flipped: Vec<bool> = chain.iter().map(|border| border.1).collect();
+    let chain = loop_of(borders, options.snap)?;
     let apex = chain.len() == 3;
     let last = chain.len() - 1;
-    let curves: Vec<&Curve> = chain.iter().map(|border| &border.0).collect();
+    let curves: Vec<&Curve> = chain.iter().map(|link| &link.curve).collect();
 
     let (first, right, left) = (curves[0], curves[1].clone(), curves[last].clone().reversed());
     let far = (!apex).then(|| curves[2].clone().reversed());
@@ -53,62 +52,72 @@ pub fn network(
     inner.sort_by(|a, b| a.0.total_cmp(&b.0));
     let across: Vec<Curve> = [left].into_iter().chain(inner.into_iter().map(|(_, rail)| rail)).chain([right]).collect();
 
-    // Directions one a point are read along the curve as it runs here.
-    let run_back = |place: usize, reversed: bool| -> Option<Vec<glam::DVec3>> {
-        match neighbour(place) {
-            Some((Neighbour::Directions(directions), _)) if flipped[place] != reversed => {
+    // Directions one a point belong to the curve as it is given, and are read along it as it runs here.
+    let given = |link: &Link| neighbours.get(link.index).copied().flatten();
+    let turned = |link: &Link, reversed: bool| -> Option<Vec<DVec3>> {
+        match given(link) {
+            Some(Neighbour::Directions(directions)) if link.turned != reversed => {
                 Some(directions.iter().rev().copied().collect())
             }
             _ => None,
         }
     };
-    let turned = [run_back(0, false), run_back(1, false), run_back(2, true), run_back(last, true)];
-    let beyond = |place: usize, turned: &'_ Option<Vec<glam::DVec3>>| match (neighbour(place), turned) {
-        (Some(_), Some(_)) | (None, _) => None,
-        (Some((given, _)), None) => Some(given),
-    };
-    let pick = |place: usize, slot: usize| {
-        turned[slot].as_ref().map(|directions| Neighbour::Directions(directions)).or(beyond(place, &turned[slot]))
+    let far_link = &chain[last.min(2)];
+    let places = [(&chain[0], false), (far_link, true), (&chain[last], true), (&chain[1], false)];
+    let owned = places.map(|(link, reversed)| turned(link, reversed));
+    let beyond = |k: usize| match &owned[k] {
+        Some(directions) => Some(Neighbour::Directions(directions)),
+        None => given(places[k].0),
     };
     let drawing = Drawing {
         rails: &across,
         profiles: [Some(first), far.as_ref()].into_iter().flatten().collect(),
         closed: false,
         apex,
-        neighbours: [pick(0, 0), if apex { None } else { pick(2, 2) }],
-        sides: [pick(last, 3), pick(1, 1)],
+        neighbours: [beyond(0), if apex { None } else { beyond(1) }],
+        sides: [beyond(2), beyond(3)],
     };
     sweep(&drawing, options, progress)
 }
 
-/// The borders one behind the other around the loop, beginning with the first as it is drawn, each with whether it was
-/// turned; and the index of each among those given.
-fn loop_of(borders: &[Curve], snap: f64) -> Result<(Vec<(Curve, bool)>, Vec<usize>), GenerateError> {
-    let mut chain = vec![(borders[0].clone(), false)];
-    let mut order = vec![0];
+/// A border in its loop.
+#[derive(Clone, Debug)]
+struct Link {
+    /// The border as it runs in the loop.
+    curve: Curve,
+    /// Whether that is against its own direction.
+    turned: bool,
+    /// Its index among those given.
+    index: usize,
+}
+
+/// The borders one behind the other around the loop, beginning with the first as it is drawn.
+fn loop_of(borders: &[Curve], snap: f64) -> Result<Vec<Link>, GenerateError> {
+    let mut chain = vec![Link { curve: borders[0].clone(), turned: false, index: 0 }];
     while chain.len() < borders.len() {
-        let end = chain[chain.len() - 1].0.end();
+        let before = &chain[chain.len() - 1];
+        let end = before.curve.end();
         let mut best = (f64::INFINITY, 0, false);
-        for (k, border) in borders.iter().enumerate().filter(|(k, _)| !order.contains(k)) {
+        for (k, border) in borders.iter().enumerate().filter(|(k, _)| chain.iter().all(|link| link.index != *k)) {
             for (distance, turned) in [(border.start().distance(end), false), (border.end().distance(end), true)] {
                 if distance < best.0 {
                     best = (distance, k, turned);
                 }
             }
         }
-        let (distance, k, turned) = best;
+        let (distance, index, turned) = best;
         if distance.is_nan() || distance > snap {
-            return Err(apart(borders, order[order.len() - 1], distance, snap));
+            return Err(apart(borders, before.index, distance, snap));
         }
-        let border = borders[k].clone();
-        chain.push((if turned { border.reversed() } else { border }, turned));
-        order.push(k);
+        let curve = borders[index].clone();
+        chain.push(Link { curve: if turned { curve.reversed() } else { curve }, turned, index });
     }
-    let distance = chain[chain.len() - 1].0.end().distance(chain[0].0.start());
+    let before = &chain[chain.len() - 1];
+    let distance = before.curve.end().distance(chain[0].curve.start());
     if distance.is_nan() || distance > snap {
-        return Err(apart(borders, order[order.len() - 1], distance, snap));
+        return Err(apart(borders, before.index, distance, snap));
     }
-    Ok((chain, order))
+    Ok(chain)
 }
 
 fn apart(borders: &[Curve], border: usize, distance: f64, snap: f64) -> GenerateError {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::feet::{Feet, Which};
-use super::neighbour::{Across, Edge, Neighbour, end_slopes};
+use super::neighbour::{Across, Edge, Neighbour, end_slopes, in_plane};
 use super::{GenerateError, Weights};
 use crate::beam::OpenCardinals;
 use crate::curve::Curve;
@@ -49,7 +49,7 @@ impl Side<'_> {
         };
         let edge = Edge::new(self.neighbour, self.rail, Which::Start, &feet, (Across::Profile, &profiles), warnings)?;
         let mut span = 0;
-        let mut lacks = Vec::with_capacity(rows.len());
+        let (mut lacks, mut axes) = (Vec::with_capacity(rows.len()), Vec::with_capacity(rows.len()));
         for (i, row) in rows.iter().enumerate() {
             while i > held[span + 1] {
                 span += 1;
@@ -59,14 +59,22 @@ impl Side<'_> {
             let offset = self.crossings[span] * (1.0 - share) + self.crossings[span + 1] * share;
             let wanted = edge.tangent([span, span + 1], Weights::Smooth.at(share), offset, &field)?;
             lacks.push(wanted - end_slopes(&field)[0]);
+            axes.push(edge.axes(offset, field[0])?);
         }
-        let slopes = end_slopes(&lacks);
-        let at_profiles: Vec<DVec3> = held.iter().map(|section| lacks[*section]).collect();
-        let known = functions.positions().iter().zip(at_profiles).chain(functions.tangents().iter().zip(slopes));
+        // What is to stay at the profiles: first as far as it lies in the tangent plane, taken along with the plane, so
+        // that the joint stays smooth between them; then the rest, which is small where all tangents fit.
+        let last = rows.len() - 1;
         let mut rest = lacks;
-        for (function, value) in known {
-            for (lack, weight) in rest.iter_mut().zip(function) {
-                *lack -= value * *weight;
+        for in_the_plane in [true, false] {
+            let slopes = end_slopes(&rest);
+            let at_profiles = held.iter().map(|section| (*section, rest[*section]));
+            let known: Vec<(usize, DVec3)> = at_profiles.chain([(0, slopes[0]), (last, slopes[1])]).collect();
+            for (function, (section, value)) in functions.positions().iter().chain(functions.tangents()).zip(known) {
+                let [a, b] = in_plane(value, axes[section]);
+                for ((lack, weight), [along, across]) in rest.iter_mut().zip(function).zip(&axes) {
+                    let there = if in_the_plane { *along * a + *across * b } else { value };
+                    *lack -= there * *weight;
+                }
             }
         }
         for section in held {
