@@ -13,5 +13,6 @@ draw head head 480x640
 draw head head-curves 480x640 --curves --view side
 draw neck neck 560x480 --curves
 draw leg leg 400x640 --curves
+draw legs legs 560x640 --curves
 "$maquette" wedge graphs/vest.ron --vary body.k_s=0.2..5:4:log --vary shaped.before=0.05,0.17,0.3 --quiet \
     --sheet docs/pictures/wedge.png --tile 240x280

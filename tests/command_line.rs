@@ -109,7 +109,7 @@ fn json_says_the_same_as_data() {
 #[test]
 fn two_runs_and_runs_with_1_2_and_8_threads_give_identical_bytes() {
     let folder = TempDir::new().unwrap();
-    for name in ["vest", "head", "neck", "leg"] {
+    for name in ["vest", "head", "neck", "leg", "legs"] {
         let bytes = |threads: &str, try_: u8| {
             let path = |extension: &str| {
                 let path = folder.path().join(format!("{name}-{threads}-{try_}.{extension}"));

@@ -112,12 +112,12 @@ fn every_saved_graph_is_tested_here() {
         .filter(|path| path.extension().is_some_and(|e| e == "ron"))
         .map(|path| path.file_stem().unwrap().to_string_lossy().into_owned())
         .collect();
-    assert_eq!(saved, ["head", "leg", "neck", "vest"].map(str::to_owned).into(), "add a test for a new graph");
+    assert_eq!(saved, ["head", "leg", "legs", "neck", "vest"].map(str::to_owned).into(), "add a test for a new graph");
 }
 
 #[test]
 fn no_saved_graph_has_a_node_without_use() {
-    for name in ["vest", "head", "neck", "leg"] {
+    for name in ["vest", "head", "neck", "leg", "legs"] {
         let saved = Saved::load(name);
         let used = saved.graph.upstream(&saved.graph.results());
         assert_eq!(used.len(), saved.graph.nodes().len(), "{name}");
@@ -285,4 +285,28 @@ fn the_leg_is_closed_smooth_and_within_its_silhouettes() {
     let (low, high) = bounds(&leg);
     assert!(low.y > 0.1 && high.y < 0.8 && high.y - low.y > 0.68, "{low} {high}");
     assert!(ripple(&sections).sign_changes <= 8, "{:?}", ripple(&sections));
+}
+
+#[test]
+fn the_legs_are_the_leg_twice_as_mirror_images() {
+    let saved = Saved::load("legs");
+    let mut evaluator = Evaluator::default();
+    let evaluation = saved.evaluate(&mut evaluator, &["left", "right", "contours"]);
+    let (left, right) = (mesh(&saved, &evaluation, "left"), mesh(&saved, &evaluation, "right"));
+    for (name, mesh) in [("left", left), ("right", right)] {
+        assert_fair(name, mesh, true, 180.0);
+    }
+    let ((low, high), (mirrored_low, mirrored_high)) = (bounds(left), bounds(right));
+    let mirror = DVec3::new(-1.0, 1.0, 1.0);
+    assert!(low.x > 0.0 && mirrored_high.x < 0.0, "{low} {mirrored_high}");
+    // The rings of the two begin at the same seam and run the same way around, so that points differ a little.
+    assert!((mirror * mirrored_low).distance(DVec3::new(high.x, low.y, low.z)) < 5e-3, "{mirrored_low} {low} {high}");
+    assert!((mirror * mirrored_high).distance(DVec3::new(low.x, high.y, high.z)) < 5e-3);
+
+    // What is done curve by curve is what is done to all at once: the graph of one leg does that.
+    let one = Saved::load("leg");
+    let evaluation_of_one = one.evaluate(&mut evaluator, &["even contours", "surface"]);
+    let all = curves(&one, &evaluation_of_one, "even contours", "curves");
+    assert_eq!(curves(&saved, &evaluation, "contours", "contours"), all);
+    assert_eq!(mesh(&one, &evaluation_of_one, "surface"), left);
 }

@@ -224,3 +224,40 @@ fn what_can_not_be_watched_is_refused() {
     watch.write(IMPORT);
     watch.next();
 }
+
+#[test]
+fn parts_and_what_they_read_are_followed() {
+    let mut watch = Watch::start(&[]);
+    watch.next();
+    let folder = watch.folder.path().to_owned();
+    std::fs::create_dir(folder.join("parts")).unwrap();
+    let (head, _) = IMPORT.split_once("        \"lines\": (").unwrap();
+    let part = format!("{head}    }},\n    outputs: {{ \"curves\": (from: \"even.curves\") }},\n)\n");
+    let put = |name: &str, content: &str| {
+        std::fs::write(folder.join("beside"), content).unwrap();
+        std::fs::rename(folder.join("beside"), folder.join("parts").join(name)).unwrap();
+    };
+    std::fs::copy(folder.join("drawn.json"), folder.join("parts/drawn.json")).unwrap();
+    put("line.ron", &part);
+    let using = r#"(version: 1, nodes: {
+        "line": (kind: "graph", body: File("parts/line.ron")),
+        "lines": (kind: "curves-out", inputs: { "curves": Link("line.curves") }),
+    })"#;
+    watch.write(using);
+    let line = watch.next();
+    assert!(line.starts_with("ran 1 (line), 1 hits, "), "{line}");
+    // The part, broken, mended, and what it reads.
+    put("line.ron", &part.replace("resample", "resampel"));
+    let complaints = [watch.complaint(), watch.complaint()];
+    assert!(complaints[0].contains("\"line\" gives nothing at \"curves\""), "{complaints:?}");
+    assert!(complaints[1].contains("parts/line.ron:6:19: error: node \"even\": the node kind"), "{complaints:?}");
+    put("line.ron", &part.replace("\"count\": 16", "\"count\": 24"));
+    let line = watch.next();
+    assert!(line.starts_with("ran 2 (line, lines), 0 hits, "), "{line}");
+    draw(&folder, "0.3");
+    std::fs::rename(folder.join("drawn.json"), folder.join("parts/drawn.json")).unwrap();
+    let line = watch.next();
+    assert!(line.starts_with("ran 2 (line, lines), 0 hits, "), "{line}");
+    drop(watch.process.stdin.take());
+    assert_eq!(watch.end(), 0);
+}

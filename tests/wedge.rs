@@ -171,7 +171,7 @@ fn a_second_call_does_only_what_is_missing_or_changed() {
     std::fs::write(&graph, text.replace("\n    },\n)\n", "\n    },\n    layout: { \"hem\": (7.0, 7.0) },\n)\n"))
         .unwrap();
     assert_eq!(states(&arguments), all("kept"));
-    std::fs::write(&graph, text.replacen("\"before\": 0.17", "\"before\": 0.18", 1)).unwrap();
+    std::fs::write(&graph, text.replacen("value: 0.17", "value: 0.18", 1)).unwrap();
     assert_eq!(states(&arguments), all("done"));
     std::fs::write(&graph, &text).unwrap();
     assert_eq!(states(&arguments), all("done"), "the files are those of the other graph");

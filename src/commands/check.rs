@@ -3,9 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use maquette_graph::file::Severity;
-use maquette_graph::{Catalogue, Evaluator, OutcomeState, Request};
+use maquette_graph::{Catalogue, Evaluator, OutcomeState, Parameter, Request, Unit};
 
+use super::diff::spelled_literal;
 use super::graph_file::GraphFile;
+use super::project::ProjectArguments;
 use super::{Ended, console};
 
 /// Load graphs and say everything that is wrong with them, each with place and remedy.
@@ -14,6 +16,11 @@ pub struct Arguments {
     /// Evaluate every node as well, and say which ones fail; without it nothing is evaluated.
     #[arg(long)]
     evaluate: bool,
+    #[command(flatten)]
+    project: ProjectArguments,
+    /// List the parameters of each graph: what they hold, their ranges, what they are for.
+    #[arg(long)]
+    parameters: bool,
     /// The graphs, .ron files.
     #[arg(required = true)]
     graphs: Vec<PathBuf>,
@@ -30,7 +37,7 @@ pub fn check(arguments: &Arguments) -> Ended {
     };
     let mut ended = Ended::Done;
     for path in &arguments.graphs {
-        if !check_one(&catalogue, path, arguments.evaluate) {
+        if !check_one(&catalogue, path, arguments) {
             ended = Ended::Wrong;
         }
     }
@@ -38,8 +45,8 @@ pub fn check(arguments: &Arguments) -> Ended {
 }
 
 /// Whether the graph is sound.
-fn check_one(catalogue: &Catalogue, path: &Path, evaluate: bool) -> bool {
-    let file = match GraphFile::open(catalogue, path) {
+fn check_one(catalogue: &Catalogue, path: &Path, arguments: &Arguments) -> bool {
+    let file = match GraphFile::open(catalogue, path, &arguments.project) {
         Ok(file) => file,
         Err(messages) => {
             messages.iter().for_each(console::remark);
@@ -54,14 +61,18 @@ fn check_one(catalogue: &Catalogue, path: &Path, evaluate: bool) -> bool {
         match problem.severity {
             Severity::Error => errors += 1,
             Severity::Warning => warnings += 1,
+            Severity::Note => {}
         }
     }
     let all: Vec<_> = graph.nodes().map(|(id, _)| id).collect();
-    let said: Vec<String> = file.missing_links(&all).into_iter().chain(file.missing_content()).collect();
+    // A graph with outputs is a part of others, which give it what it takes.
+    let is_part = graph.outputs().len() > 0;
+    let missing = if is_part { file.missing_links_within(&all) } else { file.missing_links(&all) };
+    let said: Vec<String> = missing.into_iter().chain(file.missing_content()).collect();
     said.iter().for_each(console::remark);
     errors += said.len();
-    if evaluate {
-        let request = Request::nodes(&all).base(file.base()).examine();
+    if arguments.evaluate {
+        let request = Request::nodes(&file.given(&all)).base(file.base()).project(&file.project).examine();
         let evaluation = Evaluator::default().evaluate(catalogue, graph, &request);
         for (id, outcome) in evaluation.outcomes() {
             match &outcome.state {
@@ -84,8 +95,9 @@ fn check_one(catalogue: &Catalogue, path: &Path, evaluate: bool) -> bool {
         }
     }
     let results = graph.results();
-    let used = graph.upstream(&results);
-    if results.is_empty() {
+    let promoted = graph.outputs().filter_map(|output| Some(output.link()?.node));
+    let used = graph.upstream(&results.iter().copied().chain(promoted).collect::<Vec<_>>());
+    if results.is_empty() && !is_part {
         let path = path.display();
         console::remark(format!("{path}: warning: the graph has no result: add a mesh-out or curves-out node"));
         warnings += 1;
@@ -101,6 +113,9 @@ fn check_one(catalogue: &Catalogue, path: &Path, evaluate: bool) -> bool {
             warnings += 1;
         }
     }
+    if arguments.parameters {
+        graph.parameters().for_each(|parameter| console::say(parameter_line(parameter)));
+    }
     let verdict = if errors == 0 { "sound" } else { "not sound" };
     let count = |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
     console::say(format!(
@@ -112,4 +127,21 @@ fn check_one(catalogue: &Catalogue, path: &Path, evaluate: bool) -> bool {
         count(warnings, "warning")
     ));
     errors == 0
+}
+
+/// A parameter on one line.
+fn parameter_line(parameter: &Parameter) -> String {
+    let spec = parameter.spec();
+    let unit = if spec.unit == Unit::None { String::new() } else { format!(" {}", spec.unit) };
+    let value = match parameter.value() {
+        Some(value) => format!(" = {}{unit}", spelled_literal(value)),
+        None if spec.optional => ", optional".to_owned(),
+        None => ", given from outside".to_owned(),
+    };
+    let range = spec.range.map(|range| format!(", {range}{unit}")).unwrap_or_default();
+    let soft = spec.soft_range.map(|range| format!(" (usually {range})")).unwrap_or_default();
+    let options: Vec<_> = spec.options.iter().map(|option| option.name.as_str()).collect();
+    let options = if options.is_empty() { String::new() } else { format!(", one of {}", options.join(", ")) };
+    let text = if spec.description.is_empty() { String::new() } else { format!(": {}", spec.description) };
+    format!("  {}{value} ({}{range}{soft}{options}){text}", parameter.name(), parameter.wire())
 }

@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use maquette_graph::file::Project;
 use maquette_graph::{
     Catalogue, Evaluation, Evaluator, EvaluatorOptions, Graph, InputSpec, Literal, NodeId, OutcomeState, Request,
     Source,
@@ -12,6 +13,8 @@ use maquette_graph::{
 pub(super) struct Options<'a> {
     /// The folder at which relative paths start.
     pub(super) base: &'a Path,
+    /// The files that may be read.
+    pub(super) project: &'a Project,
     /// Threads; 0 takes one per core.
     pub(super) threads: usize,
 }
@@ -72,7 +75,8 @@ impl Trial<'_> {
     }
 
     fn evaluate(&self, evaluator: &mut Evaluator, graph: &Graph) -> Evaluation {
-        evaluator.evaluate(self.catalogue, graph, &Request::nodes(self.nodes).base(self.options.base))
+        let request = Request::nodes(self.nodes).base(self.options.base).project(self.options.project);
+        evaluator.evaluate(self.catalogue, graph, &request)
     }
 
     fn evaluate_afresh(&self, graph: &Graph) -> Evaluation {
@@ -114,7 +118,7 @@ fn perturbations(graph: &Graph, id: NodeId) -> Vec<(String, Vec<Literal>, Option
             let (now, before) = match node.source(&spec.name) {
                 Some(Source::Literal { literal, .. }) => (literal, Some(literal.clone())),
                 None => (spec.default.as_ref()?, None),
-                Some(Source::Link(_) | Source::Unread(_)) => return None,
+                Some(Source::Link(_) | Source::Parameter(_) | Source::Unread(_)) => return None,
             };
             let others = others(now, spec).into_iter().filter(|other| other != now).collect();
             Some((spec.name.clone(), others, before))
@@ -187,7 +191,8 @@ mod tests {
         graph.set(first, "number", Literal::Number(3.0)).unwrap();
         graph.connect(&catalogue, first, "number", second, "number").unwrap();
         let free = graph.add(&catalogue, "double", "third").unwrap();
-        let options = Options { base: Path::new(""), threads: 1 };
+        let project = Project::default();
+        let options = Options { base: Path::new(""), project: &project, threads: 1 };
         let before = maquette_graph::file::to_text(&graph);
         let found = check(&catalogue, &mut graph, &[second, free], &options);
         assert_eq!(maquette_graph::file::to_text(&graph), before, "values are put back");

@@ -8,9 +8,10 @@ use maquette_graph::{
     CancelToken, Catalogue, Evaluation, Evaluator, EvaluatorOptions, NodeId, OutcomeState, Request, WireType,
 };
 
+use super::console;
 use super::graph_file::GraphFile;
 use super::progress_bar::Progress;
-use super::{console, overrides};
+use super::project::ProjectArguments;
 
 /// What is evaluated, and how.
 #[derive(clap::Args)]
@@ -20,9 +21,12 @@ pub struct EvaluationArguments {
     /// Evaluate only this result (the name of a mesh-out or curves-out node); may be given several times.
     #[arg(long = "output", value_name = "NAME")]
     pub(super) outputs: Vec<String>,
-    /// Put a value at an input for this evaluation, such as --set legs.count=32; may be given several times.
-    #[arg(long = "set", value_name = "NODE.PORT=VALUE")]
+    /// Put a value at an input, such as --set legs.count=32, or at a parameter of the graph, such as --set
+    /// stiffness=0.8, for this evaluation; may be given several times. maquette check --parameters lists parameters.
+    #[arg(long = "set", value_name = "ADDRESS=VALUE")]
     pub(super) set: Vec<String>,
+    #[command(flatten)]
+    pub(super) project: ProjectArguments,
     /// Threads, at most 256; 0 takes one per core. The number changes no result.
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u16).range(0..=256))]
     pub(super) threads: u16,
@@ -78,9 +82,8 @@ pub(super) fn open(
     arguments: &EvaluationArguments,
     suits: impl Fn(&[WireType]) -> Result<(), Vec<String>>,
 ) -> Result<Opened, Vec<String>> {
-    let (mut file, warnings) = GraphFile::open_sound(catalogue, &arguments.graph)?;
-    let wrong: Vec<String> =
-        arguments.set.iter().filter_map(|set| overrides::apply(&mut file.loaded.graph, set).err()).collect();
+    let (mut file, warnings) = GraphFile::open_sound(catalogue, &arguments.graph, &arguments.project)?;
+    let wrong: Vec<String> = arguments.set.iter().filter_map(|set| file.apply(set).err()).collect();
     if !wrong.is_empty() {
         let path = file.path.display();
         return Err(wrong.into_iter().map(|message| format!("{path}: error: {message}")).collect());
@@ -128,7 +131,7 @@ impl Opened {
         let graph = &file.loaded.graph;
         let progress = Progress::new(!quiet);
         let asked = if keep == Keep::Everything { graph.upstream(&targets) } else { targets.clone() };
-        let request = Request::nodes(&asked).events(&progress).base(file.base()).cancel(cancel);
+        let request = Request::nodes(&asked).events(&progress).base(file.base()).project(&file.project).cancel(cancel);
         let request = if examine { request.examine() } else { request };
         let evaluation = evaluator.evaluate(catalogue, graph, &request);
         progress.finish();

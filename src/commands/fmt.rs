@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use maquette_graph::Catalogue;
-use maquette_graph::file::{self, Problem};
+use maquette_graph::file::{self, Problem, Severity};
 
 use super::comments::comments;
 use super::graph_file::GraphFile;
+use super::project::ProjectArguments;
 use super::{Ended, console, write};
 
 /// Rewrite graphs in the stable form: the order and layout in which the editor saves them.
@@ -27,6 +28,8 @@ pub struct Arguments {
     /// Drop comments, which the stable form can't keep (notes and note can).
     #[arg(long)]
     drop_comments: bool,
+    #[command(flatten)]
+    project: ProjectArguments,
     /// Say nothing but errors.
     #[arg(long, short)]
     quiet: bool,
@@ -54,7 +57,7 @@ pub fn fmt(arguments: &Arguments) -> Ended {
 
 fn one(catalogue: &Catalogue, arguments: &Arguments, path: &Path) -> Ended {
     let name = path.display();
-    let file = match GraphFile::open(catalogue, path) {
+    let file = match GraphFile::open(catalogue, path, &arguments.project) {
         Ok(file) => file,
         Err(messages) => {
             messages.iter().for_each(console::remark);
@@ -107,12 +110,18 @@ fn one(catalogue: &Catalogue, arguments: &Arguments, path: &Path) -> Ended {
 /// Problems that the stable form would no longer have, because what they are about is not written: an input that occurs
 /// twice, a name that can't be one.
 fn lost<'a>(catalogue: &Catalogue, file: &'a GraphFile, stable: &str) -> Vec<&'a Problem> {
-    let Ok(again) = file::from_text(catalogue, stable) else {
+    let Ok(again) = GraphFile::from_bytes(
+        catalogue,
+        &file.path,
+        stable.as_bytes().to_vec(),
+        Some(file.base()),
+        file.project.clone(),
+    ) else {
         // The stable form of what was read can always be read.
         return file.loaded.problems.iter().collect();
     };
     let key = |p: &Problem| (p.node.clone(), p.port.clone(), p.message.clone());
-    let mut left: Vec<_> = again.problems.iter().map(key).collect();
+    let mut left: Vec<_> = again.loaded.problems.iter().map(key).collect();
     let gone = |problem: &&Problem| match left.iter().position(|k| *k == key(problem)) {
         Some(at) => {
             left.swap_remove(at);
@@ -120,5 +129,6 @@ fn lost<'a>(catalogue: &Catalogue, file: &'a GraphFile, stable: &str) -> Vec<&'a
         }
         None => true,
     };
-    file.loaded.problems.iter().filter(gone).collect()
+    // What is said of an old file is over when it is one of today.
+    file.loaded.problems.iter().filter(|p| p.severity != Severity::Note).filter(gone).collect()
 }

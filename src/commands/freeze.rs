@@ -7,7 +7,8 @@ use maquette_graph::file::Severity;
 use maquette_graph::freeze::{FreezeError, Golden, Tolerance};
 
 use super::graph_file::GraphFile;
-use super::{Ended, console, overrides, write};
+use super::project::ProjectArguments;
+use super::{Ended, console, write};
 
 /// Write a node's inputs and outputs as a golden file, which cargo test compares with what the node gives
 /// (crates/nodes/tests/frozen). Freezing to the same file again replaces it.
@@ -22,9 +23,12 @@ pub struct Arguments {
     /// Write the golden file here (.ron); without it, to stdout.
     #[arg(short = 'o', long = "write", value_name = "FILE")]
     file: Option<PathBuf>,
-    /// Put a value at an input first, such as --set even.count=8; may be given several times.
-    #[arg(long = "set", value_name = "NODE.PORT=VALUE")]
+    /// Put a value at an input first, such as --set even.count=8, or at a parameter of the graph; may be given several
+    /// times.
+    #[arg(long = "set", value_name = "ADDRESS=VALUE")]
     set: Vec<String>,
+    #[command(flatten)]
+    project: ProjectArguments,
     /// How far numbers may be off, in their unit; metres for points.
     #[arg(long, value_name = "LENGTH", default_value_t = Tolerance::default().absolute)]
     absolute: f64,
@@ -68,11 +72,11 @@ fn freeze_node(arguments: &Arguments, graph: &Path, name: &str) -> Attempt {
         }
     }
     let catalogue = catalogue()?;
-    let (mut file, warnings) = GraphFile::open_sound(&catalogue, graph).map_err(|messages| (Ended::Wrong, messages))?;
+    let (mut file, warnings) =
+        GraphFile::open_sound(&catalogue, graph, &arguments.project).map_err(|messages| (Ended::Wrong, messages))?;
     warnings.iter().for_each(console::remark);
     for set in &arguments.set {
-        overrides::apply(&mut file.loaded.graph, set)
-            .map_err(|message| wrong(format!("{}: error: {message}", graph.display())))?;
+        file.apply(set).map_err(|message| wrong(format!("{}: error: {message}", graph.display())))?;
     }
     let node = file.loaded.graph.find(name).ok_or_else(|| {
         let hint = file.loaded.graph.suggest(name).map(|s| format!("; did you mean \"{s}\"?")).unwrap_or_default();
@@ -83,7 +87,8 @@ fn freeze_node(arguments: &Arguments, graph: &Path, name: &str) -> Attempt {
         return Err((Ended::Wrong, missing));
     }
     let tolerance = Tolerance { absolute: arguments.absolute, relative: arguments.relative };
-    let mut golden = Golden::of(&catalogue, &file.loaded.graph, node, file.base(), tolerance).map_err(|error| {
+    let golden = Golden::of_project(&catalogue, &file.loaded.graph, node, file.base(), &file.project, tolerance);
+    let mut golden = golden.map_err(|error| {
         let ended = if matches!(error, FreezeError::NoResult(_)) { Ended::Failed } else { Ended::Wrong };
         (ended, vec![file.about(Severity::Error, node, None, &error.to_string())])
     })?;

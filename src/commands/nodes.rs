@@ -59,6 +59,10 @@ pub fn nodes(arguments: &Arguments) -> Ended {
     Ended::Done
 }
 
+/// Where the ports of a node with a body come from.
+const BODY: &str =
+    "The parameters of its body are further inputs, the outputs of its body its outputs (docs/parts.md).";
+
 /// The reference page of all node kinds.
 pub fn markdown(catalogue: &Catalogue) -> String {
     let mut page = String::from(
@@ -73,6 +77,12 @@ pub fn markdown(catalogue: &Catalogue) -> String {
     page.push_str("\nImplicit conversions, only where nothing is lost: ");
     let conversions: Vec<_> = catalogue.conversions().map(|(from, to)| format!("`{from}` to `{to}`")).collect();
     let _ = writeln!(page, "{}.\n", conversions.join(", "));
+    page.push_str("What `repeat` collects: ");
+    let collected = catalogue.collections().map(|(item, collected, splits)| {
+        let split = if splits { " (and takes apart again with `each`)" } else { "" };
+        format!("`{item}` to `{collected}`{split}")
+    });
+    let _ = writeln!(page, "{}.\n", collected.collect::<Vec<_>>().join(", "));
     let mut categories: Vec<&str> = catalogue.kinds().map(|kind| kind.category()).collect();
     categories.sort_unstable();
     categories.dedup();
@@ -89,6 +99,10 @@ pub fn markdown(catalogue: &Catalogue) -> String {
 
 fn kind_markdown(kind: &NodeKind) -> String {
     let mut text = format!("### {}\n\n{}\n\n", kind.name(), kind.description());
+    if kind.has_body() {
+        text.push_str(BODY);
+        text.push_str("\n\n");
+    }
     if !kind.reference_text().is_empty() {
         let _ = writeln!(text, "Reference: {}.\n", kind.reference_text());
     }
@@ -108,6 +122,9 @@ fn kind_markdown(kind: &NodeKind) -> String {
             );
         }
         text.push('\n');
+    }
+    if kind.has_body() && kind.outputs().is_empty() {
+        return text;
     }
     text.push_str("| output | type | what it is |\n|---|---|---|\n");
     for output in kind.outputs() {
@@ -141,6 +158,9 @@ fn measured(kind: &NodeKind) -> Vec<(String, String, String)> {
 fn kind_text(kind: &NodeKind) -> String {
     let mut text =
         format!("{} (version {}, {})\n  {}\n", kind.name(), kind.version(), kind.category(), kind.description());
+    if kind.has_body() {
+        let _ = writeln!(text, "  {BODY}");
+    }
     if !kind.reference_text().is_empty() {
         let _ = writeln!(text, "  reference: {}", kind.reference_text());
     }
@@ -252,6 +272,7 @@ fn kind_json(kind: &NodeKind) -> Json {
         "description": kind.description(),
         "reference": kind.reference_text(),
         "result": kind.gives_result(),
+        "has_body": kind.has_body(),
         "inputs": inputs,
         "outputs": outputs,
         "figures": figures,

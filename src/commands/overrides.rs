@@ -1,53 +1,85 @@
-//! `--set NODE.PORT=VALUE`: values from the command line, read by the type of their port.
+//! `--set NODE.PORT=VALUE`, `--set PARAMETER=VALUE`: values from the command line, read by the type of their port.
 
 use maquette_graph::file::parse_literal;
-use maquette_graph::{Graph, Literal, LiteralKind, NodeId};
+use maquette_graph::{Graph, InputSpec, Literal, LiteralKind, NodeId};
 
 /// Where a value that is given on the command line goes.
 #[derive(Clone, Debug)]
 pub(super) struct Place {
-    node: NodeId,
-    port: String,
+    target: Target,
     /// What kind of value it takes.
     pub(super) wanted: LiteralKind,
     /// The options of a choice.
     pub(super) options: Vec<String>,
 }
 
-/// Puts a value given on the command line into the graph.
+#[derive(Clone, Debug)]
+enum Target {
+    Input(NodeId, String),
+    /// A parameter of the graph, and the nodes that use it.
+    Parameter(String, Vec<NodeId>),
+}
+
+/// Puts a value given on the command line into the graph, and gives it as it was understood.
 ///
 /// Texts, choices and files are written bare, vectors and colours as numbers separated by commas; anything may also be
 /// written as in a graph file. A relative path starts at the current folder.
-pub(super) fn apply(graph: &mut Graph, assignment: &str) -> Result<(), String> {
+pub(super) fn apply(graph: &mut Graph, assignment: &str) -> Result<Literal, String> {
     let fail = |reason: String| format!("--set {assignment}: {reason}");
-    let (address, value) = assignment.split_once('=').ok_or_else(|| fail("write it as NODE.PORT=VALUE".to_owned()))?;
+    let how = || "write it as NODE.PORT=VALUE, or PARAMETER=VALUE".to_owned();
+    let (address, value) = assignment.split_once('=').ok_or_else(|| fail(how()))?;
     let place = Place::find(graph, address).map_err(fail)?;
     let literal = place.read(value).map_err(fail)?;
-    place.set(graph, literal).map_err(fail)
+    place.set(graph, literal.clone()).map_err(fail)?;
+    Ok(literal)
 }
 
 impl Place {
-    /// The place of an address, `NODE.PORT`; why there is none is an error.
+    /// The place of an address, `NODE.PORT` or the name of a parameter; why there is none is an error.
     pub(super) fn find(graph: &Graph, address: &str) -> Result<Self, String> {
-        let (name, port) = address.rsplit_once('.').ok_or_else(|| "write it as NODE.PORT=VALUE".to_owned())?;
+        let Some((name, port)) = address.rsplit_once('.') else { return Self::parameter(graph, address) };
         let node = graph.find(name).ok_or_else(|| {
             let hint = graph.suggest(name).map(|s| format!("; did you mean \"{s}\"?")).unwrap_or_default();
             format!("no node is named \"{name}\"{hint}")
         })?;
         let kind = graph.node(node).and_then(|n| n.kind().cloned());
-        let spec = kind.as_ref().and_then(|k| k.find_input(port)).ok_or_else(|| {
+        // A script may be as old as a file.
+        let spec = kind.as_ref().and_then(|k| k.current_input(port)).ok_or_else(|| {
             let known = kind.iter().flat_map(|k| k.inputs()).map(|i| i.name.as_str()).collect::<Vec<_>>().join(", ");
             format!("node \"{name}\" has no input \"{port}\"; it has {known}")
         })?;
-        let wanted = LiteralKind::of_wire(spec.wire)
-            .ok_or_else(|| format!("the input takes {} from a link; a value can't be given", spec.wire))?;
+        Self::of(Target::Input(node, spec.name.clone()), spec)
+            .ok_or_else(|| format!("the input takes {} from a link; a value can't be given", spec.wire))
+    }
+
+    fn parameter(graph: &Graph, name: &str) -> Result<Self, String> {
+        let Some(found) = graph.parameter(name) else {
+            let known: Vec<_> = graph.parameters().map(|parameter| parameter.name()).collect();
+            return Err(match graph.suggest_parameter(name) {
+                Some(suggestion) => format!("the graph has no parameter \"{name}\"; did you mean \"{suggestion}\"?"),
+                None if known.is_empty() => {
+                    format!("the graph has no parameters; give NODE.PORT=VALUE in place of {name}")
+                }
+                None => format!("the graph has no parameter \"{name}\"; it has {}", known.join(", ")),
+            });
+        };
+        let mut users: Vec<NodeId> = graph.uses(name).into_iter().map(|(node, _)| node).collect();
+        users.dedup();
+        Self::of(Target::Parameter(name.to_owned(), users), found.spec())
+            .ok_or_else(|| format!("the parameter takes {} from outside; a value can't be given", found.wire()))
+    }
+
+    fn of(target: Target, spec: &InputSpec) -> Option<Self> {
         let options = spec.options.iter().map(|option| option.name.clone()).collect();
-        Ok(Self { node, port: port.to_owned(), wanted, options })
+        Some(Self { target, wanted: LiteralKind::of_wire(spec.wire)?, options })
     }
 
     /// The nodes that take this value as it is.
     pub(super) fn nodes(&self) -> Vec<NodeId> {
-        vec![self.node]
+        match &self.target {
+            Target::Input(node, _) => vec![*node],
+            Target::Parameter(_, users) => users.clone(),
+        }
     }
 
     /// A value as it is written on the command line.
@@ -57,7 +89,10 @@ impl Place {
 
     /// Puts a value there.
     pub(super) fn set(&self, graph: &mut Graph, literal: Literal) -> Result<(), String> {
-        graph.set(self.node, &self.port, literal).map_err(|error| error.to_string())
+        match &self.target {
+            Target::Input(node, port) => graph.set(*node, port, literal).map_err(|error| error.to_string()),
+            Target::Parameter(name, _) => graph.set_parameter(name, literal).map_err(|error| error.to_string()),
+        }
     }
 }
 

@@ -6,12 +6,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use maquette_graph::{Event, EventKind, Events, NodeId};
+use maquette_graph::{Event, EventKind, Events};
 
 /// Follows an evaluation on stderr; silent where that is no terminal.
 pub(super) struct Progress {
     bar: ProgressBar,
-    running: Mutex<BTreeMap<NodeId, String>>,
+    /// By name: nodes within a body share the identity of the node that has it.
+    running: Mutex<BTreeMap<String, String>>,
     planned: AtomicBool,
 }
 
@@ -29,7 +30,7 @@ impl Progress {
         self.bar.finish_and_clear();
     }
 
-    fn change(&self, change: impl FnOnce(&mut BTreeMap<NodeId, String>)) {
+    fn change(&self, change: impl FnOnce(&mut BTreeMap<String, String>)) {
         let mut running = self.running.lock().unwrap_or_else(PoisonError::into_inner);
         change(&mut running);
         self.bar.set_message(running.values().cloned().collect::<Vec<_>>().join(", "));
@@ -51,10 +52,10 @@ impl Events for Progress {
                 self.bar.set_length(*count as u64);
             }
             EventKind::Started => self.change(|running| {
-                running.insert(event.node, event.name.to_owned());
+                running.insert(event.name.to_owned(), event.name.to_owned());
             }),
             EventKind::Progress(fraction) => self.change(|running| {
-                running.insert(event.node, format!("{} {:.0} %", event.name, fraction * 100.0));
+                running.insert(event.name.to_owned(), format!("{} {:.0} %", event.name, fraction * 100.0));
             }),
             EventKind::Examined(_) => {}
             EventKind::Hit
@@ -63,7 +64,7 @@ impl Events for Progress {
             | EventKind::Waiting(_)
             | EventKind::Cancelled => {
                 self.change(|running| {
-                    running.remove(&event.node);
+                    running.remove(event.name);
                 });
                 self.bar.inc(1);
             }

@@ -11,6 +11,7 @@ use serde_json::{Value as Json, json};
 
 use super::evaluation::{Evaluated, EvaluationArguments, Keep, Opened, evaluator, open};
 use super::fail_if::{self, Limit};
+use super::graph_file::GraphFile;
 use super::hashes::{self, Hashes};
 use super::{Ended, console, report_text, results, watch, write};
 
@@ -111,6 +112,13 @@ impl<'a> Runner<'a> {
         let unknown = fail_if::refuse_unknown(&self.limits, &opened.file.loaded.graph, &opened.targets);
         opened.examine = self.arguments.report || !self.limits.is_empty();
         if unknown.is_empty() { Ok(opened) } else { Err(unknown) }
+    }
+
+    /// The files that the graph is made of and names, whatever is wrong with it.
+    pub(super) fn files(&self) -> Vec<PathBuf> {
+        let file =
+            GraphFile::open(&self.catalogue, &self.arguments.evaluation.graph, &self.arguments.evaluation.project);
+        file.map(|file| file.files()).unwrap_or_default()
     }
 
     /// Says what is wrong with the graph.

@@ -97,7 +97,11 @@ fn agrees(arguments: &Arguments, evaluated: &Evaluated, there: &Hashes) -> bool 
 fn is_consistent(arguments: &Arguments, catalogue: &Catalogue, evaluated: Evaluated) -> bool {
     let Evaluated { file, targets, .. } = evaluated;
     let mut graph = file.loaded.graph.clone();
-    let options = consistency::Options { base: file.base(), threads: usize::from(arguments.evaluation.threads) };
+    let options = consistency::Options {
+        base: file.base(),
+        project: &file.project,
+        threads: usize::from(arguments.evaluation.threads),
+    };
     let found = consistency::check(catalogue, &mut graph, &targets, &options);
     let path = file.path.display();
     if let Some(first) = found.differences.first() {

@@ -7,7 +7,6 @@ use std::time::{Duration, SystemTime};
 
 use maquette_graph::CancelToken;
 
-use super::graph_file::GraphFile;
 use super::run::Runner;
 use super::{Ended, console};
 
@@ -53,17 +52,20 @@ pub(super) fn watch(runner: &mut Runner<'_>, graph: &Path) -> Ended {
             .collect();
         match runner.open() {
             Ok(opened) => {
-                files = named_files(&opened.file);
+                files = opened.file.files();
                 stamps.retain(|path, _| path == graph || files.contains(path));
-                for path in &files {
-                    stamps.insert(path.clone(), stamp(path));
-                }
+                stamp_new(&mut stamps, &files);
                 match overwritten(runner, graph, &files) {
                     Some(message) => drop(runner.refuse(&[message])),
                     None => drop(runner.pass(opened)),
                 }
             }
-            Err(messages) => drop(runner.refuse(&messages)),
+            Err(messages) => {
+                // What is wrong may lie in a file that the graph includes.
+                files.extend(runner.files());
+                stamp_new(&mut stamps, &files);
+                let _ = runner.refuse(&messages);
+            }
         }
         while !runner.cancel.is_cancelled() && stamps.iter().all(|(path, before)| stamp(path) == *before) {
             std::thread::sleep(INTERVAL);
@@ -72,11 +74,11 @@ pub(super) fn watch(runner: &mut Runner<'_>, graph: &Path) -> Ended {
     Ended::Done
 }
 
-fn named_files(file: &GraphFile) -> Vec<PathBuf> {
-    let mut files: Vec<PathBuf> = file.files().map(|(_, _, path)| path).collect();
-    files.sort();
-    files.dedup();
-    files
+/// Stamps the files that were not followed before.
+fn stamp_new(stamps: &mut BTreeMap<PathBuf, Stamp>, files: &[PathBuf]) {
+    for path in files {
+        stamps.entry(path.clone()).or_insert_with(|| stamp(path));
+    }
 }
 
 /// A result that would be written over what is read would be read again, without end.

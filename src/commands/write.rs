@@ -1,12 +1,11 @@
 //! Results as files: whole or not at all.
 
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use maquette_geometry::curve::Curve;
 use maquette_geometry::file_format::{FileFormat, curves_json, gltf_write, obj, ply};
 use maquette_geometry::scene::Scene;
-use maquette_graph::WireType;
+use maquette_graph::{WireType, file};
 use maquette_nodes::wire;
 
 /// The format that a file's extension asks for.
@@ -80,46 +79,12 @@ pub(super) fn encoded(path: &Path, format: FileFormat, scene: &Scene) -> Result<
 pub(super) fn replaced(path: &Path, bytes: &[u8]) -> Result<(), String> {
     let there = std::fs::metadata(path).map_err(|error| format!("{}: it can't be written: {error}", path.display()))?;
     if there.permissions().readonly() {
-        return Err(format!("{}: it can't be written: it is protected against writing", path.display()));
+        return Err(file::SaveError::Protected(path.to_owned()).to_string());
     }
     whole(path, bytes)
 }
 
-/// Writes a file beside, then puts it in place, so that nobody ever sees half of it. A link keeps leading to the file
-/// it leads to, and a file that was there keeps its permissions.
+/// Writes a file: whole, or not at all.
 pub(super) fn whole(path: &Path, bytes: &[u8]) -> Result<(), String> {
-    let target = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let folder = target.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let attempt = || -> std::io::Result<()> {
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".maquette-");
-        ordinary(&mut builder);
-        let mut file = builder.tempfile_in(folder)?;
-        file.write_all(bytes)?;
-        file.as_file().sync_all()?;
-        if let Ok(there) = std::fs::metadata(&target) {
-            file.as_file().set_permissions(there.permissions())?;
-        }
-        file.persist(&target)?;
-        Ok(())
-    };
-    attempt().map_err(|error| {
-        let reason = if folder.is_dir() {
-            // Without the name of the temporary file, which means nothing to anybody.
-            std::io::Error::from(error.kind()).to_string()
-        } else {
-            "the folder does not exist; create it first".to_owned()
-        };
-        format!("{}: it can't be written: {reason}", path.display())
-    })
+    file::write_whole(path, bytes).map_err(|error| error.to_string())
 }
-
-/// A temporary file is private by default; a result is an ordinary file, as private as the umask says.
-#[cfg(unix)]
-fn ordinary(builder: &mut tempfile::Builder<'_, '_>) {
-    use std::os::unix::fs::PermissionsExt as _;
-    builder.permissions(std::fs::Permissions::from_mode(0o666));
-}
-
-#[cfg(not(unix))]
-fn ordinary(_: &mut tempfile::Builder<'_, '_>) {}

@@ -15,7 +15,9 @@ impl Saved {
     pub fn load(name: &str) -> Self {
         let catalogue = maquette_nodes::catalogue().unwrap();
         let bytes = std::fs::read(format!("graphs/{name}.ron")).unwrap();
-        let loaded = file::from_bytes(&catalogue, &bytes).unwrap();
+        let read = |path: &Path| std::fs::read(Path::new("graphs").join(path)).map_err(|error| error.to_string());
+        let own = format!("{name}.ron");
+        let loaded = file::from_bytes_with(&catalogue, &bytes, &file::Includes::new(&own, &read)).unwrap();
         assert_eq!(loaded.problems, [], "{name}");
         assert!(file::to_text(&loaded.graph).as_bytes() == bytes, "{name} is in the stable form");
         Self { catalogue, graph: loaded.graph }

@@ -1,15 +1,14 @@
-//! What the engine itself costs: nodes that do next to nothing, evaluated cold, after an edit, and unchanged; and
-//! files of many nodes. `cargo bench -p maquette-graph --bench evaluation`
+//! What the engine itself costs: nodes that do next to nothing, evaluated cold, after an edit, and unchanged.
+//! `cargo bench -p maquette-graph --bench evaluation`
 
 #![allow(clippy::unwrap_used, reason = "in benchmarks a failing unwrap is a failing benchmark")]
 
-use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::measurement::WallTime;
 use criterion::{BatchSize, BenchmarkGroup, Criterion, criterion_group, criterion_main};
 use maquette_graph::{
-    Catalogue, ContentHasher, Evaluator, EvaluatorOptions, Graph, Literal, NodeId, NodeKind, Request, Wire, file,
+    Catalogue, ContentHasher, Evaluator, EvaluatorOptions, Graph, Literal, NodeId, NodeKind, Request, Wire,
 };
 
 /// Points as a flat list of coordinates.
@@ -209,27 +208,12 @@ fn wide_graphs(criterion: &mut Criterion) {
     group.finish();
 }
 
-fn files(criterion: &mut Criterion) {
-    let catalogue = catalogue();
-    for count in [1_000, 10_000] {
-        let (graph, _) = chain(&catalogue, count);
-        let text = file::to_text(&graph);
-        let mut group = criterion.benchmark_group(format!("file-{count}"));
-        group.sample_size(10);
-        group.bench_function("load", |bencher| {
-            bencher.iter(|| file::from_text(&catalogue, black_box(&text)).unwrap());
-        });
-        group.bench_function("save", |bencher| bencher.iter(|| file::to_text(black_box(&graph))));
-        group.finish();
-    }
-}
-
 criterion_group! {
     name = benches;
     config = Criterion::default()
         .warm_up_time(Duration::from_millis(200))
         .measurement_time(Duration::from_millis(600))
         .sample_size(30);
-    targets = chains, heavy, wide_graphs, files
+    targets = chains, heavy, wide_graphs
 }
 criterion_main!(benches);

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use crate::body::built_in;
 use crate::freeze::{Freeze, Freezer};
+use crate::list::{Collection, ListType};
 use crate::literal::{Choice, Colour, FilePath, Strokes, Vector};
 use crate::node_kind::NodeKind;
 use crate::port::exact_number;
@@ -31,8 +33,12 @@ struct Conversion {
 #[derive(Clone)]
 pub struct Catalogue {
     kinds: BTreeMap<String, Arc<NodeKind>>,
+    /// The names of kinds by those that they had before.
+    former_names: BTreeMap<String, String>,
     wires: BTreeMap<&'static str, WireType>,
     conversions: Vec<Conversion>,
+    pub(crate) lists: Vec<ListType>,
+    pub(crate) collections: Vec<Collection>,
     freezers: BTreeMap<&'static str, (WireType, Freezer)>,
 }
 
@@ -65,9 +71,22 @@ pub enum CatalogueError {
         /// Why.
         reason: String,
     },
+    /// What is stated about former times can't be.
+    #[error("node kind \"{kind}\" states something of \"{name}\" in former times: {reason}")]
+    BadFormerName {
+        /// The kind.
+        kind: String,
+        /// The name in question.
+        name: String,
+        /// Why.
+        reason: String,
+    },
     /// Two conversions for one pair.
     #[error("a conversion from {0} to {1} is declared twice")]
     DuplicateConversion(&'static str, &'static str),
+    /// Two lists of, or ways to collect, one type.
+    #[error("how values of type {0} are listed or collected is declared twice")]
+    DuplicateList(&'static str),
 }
 
 impl Default for Catalogue {
@@ -77,10 +96,19 @@ impl Default for Catalogue {
 }
 
 impl Catalogue {
-    /// A catalogue with the built-in wire types and conversions and no kinds.
+    /// A catalogue with the built-in wire types and conversions, and no kinds but those that have a body, `graph` and
+    /// `repeat`.
     pub fn new() -> Self {
-        let mut catalogue =
-            Self { kinds: BTreeMap::new(), wires: BTreeMap::new(), conversions: Vec::new(), freezers: BTreeMap::new() };
+        let kinds = built_in().into_iter().map(|kind| (kind.name().to_owned(), Arc::new(kind))).collect();
+        let mut catalogue = Self {
+            kinds,
+            former_names: BTreeMap::new(),
+            wires: BTreeMap::new(),
+            conversions: Vec::new(),
+            lists: Vec::new(),
+            collections: Vec::new(),
+            freezers: BTreeMap::new(),
+        };
         let built_in = [
             WireType::of::<f64>(),
             WireType::of::<i64>(),
@@ -126,8 +154,15 @@ impl Catalogue {
     /// A name that is taken, a default that does not fit.
     pub fn register(&mut self, kind: NodeKind) -> Result<(), CatalogueError> {
         let name = kind.name().to_owned();
-        if self.kinds.contains_key(&name) {
+        if self.kinds.contains_key(&name) || self.former_names.contains_key(&name) {
             return Err(CatalogueError::DuplicateKind(name));
+        }
+        let taken = |name: &&String| self.kinds.contains_key(*name) || self.former_names.contains_key(*name);
+        if let Some(former) = kind.former_kind_names().iter().find(|former| taken(former) || **former == name) {
+            return Err(CatalogueError::DuplicateKind(former.clone()));
+        }
+        if let Some((former, reason)) = kind.bad_former_name() {
+            return Err(CatalogueError::BadFormerName { kind: name, name: former, reason });
         }
         let inputs: Vec<_> = kind.inputs().iter().map(|i| &i.name).collect();
         let outputs: Vec<_> = kind.outputs().iter().map(|o| &o.name).collect();
@@ -144,12 +179,24 @@ impl Catalogue {
         }
         let wires = kind.inputs().iter().map(|i| i.wire).chain(kind.outputs().iter().map(|o| o.wire));
         for wire in wires {
-            if *self.wires.entry(wire.name()).or_insert(wire) != wire {
-                return Err(CatalogueError::DuplicateWire(wire.name().to_owned()));
-            }
+            self.add_wire(wire)?;
         }
+        self.former_names.extend(kind.former_kind_names().iter().map(|former| (former.clone(), name.clone())));
         self.kinds.insert(name, Arc::new(kind));
         Ok(())
+    }
+
+    pub(crate) fn add_wire(&mut self, wire: WireType) -> Result<(), CatalogueError> {
+        if *self.wires.entry(wire.name()).or_insert(wire) == wire {
+            Ok(())
+        } else {
+            Err(CatalogueError::DuplicateWire(wire.name().to_owned()))
+        }
+    }
+
+    /// The wire type of that name.
+    pub fn wire(&self, name: &str) -> Option<WireType> {
+        self.wires.get(name).copied()
     }
 
     fn add_conversion<A: Wire, B: Wire>(
@@ -199,6 +246,11 @@ impl Catalogue {
         self.kinds.get(name)
     }
 
+    /// The name that a kind has now which had this one before.
+    pub fn kind_now(&self, former: &str) -> Option<&str> {
+        self.former_names.get(former).map(String::as_str)
+    }
+
     /// All kinds by name.
     pub fn kinds(&self) -> impl ExactSizeIterator<Item = &Arc<NodeKind>> {
         self.kinds.values()
@@ -215,9 +267,15 @@ impl Catalogue {
     }
 }
 
+/// Bytes of the longest name that others are compared with.
+const LONGEST_COMPARED: usize = 80;
+
 /// The candidate most like a misspelt name, where one is alike enough to be meant.
 pub fn closest<'a>(name: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    // Names are short; to compare two long texts takes the product of their lengths.
+    let comparable = |text: &str| text.len() <= LONGEST_COMPARED;
     candidates
+        .filter(|candidate| comparable(name) && comparable(candidate))
         .map(|candidate| (strsim::jaro_winkler(name, candidate), candidate))
         .filter(|(likeness, _)| *likeness > 0.75)
         .max_by(|a, b| a.0.total_cmp(&b.0))

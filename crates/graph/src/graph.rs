@@ -4,9 +4,12 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use crate::body::Body;
 use crate::catalogue::{Catalogue, closest};
+use crate::interface::{GraphOutput, OutputSource};
 use crate::literal::Literal;
 use crate::node_kind::NodeKind;
+use crate::parameter::Parameter;
 use crate::topology::Topology;
 use crate::value::Value;
 
@@ -49,6 +52,8 @@ pub enum Source {
     },
     /// The output of another node.
     Link(Link),
+    /// A parameter of the graph, by name.
+    Parameter(String),
     /// Text of a file that could not be understood, kept so that saving loses nothing.
     Unread(String),
 }
@@ -65,6 +70,11 @@ pub struct Node {
     pub(crate) name: String,
     pub(crate) kind_name: String,
     pub(crate) kind: Option<Arc<NodeKind>>,
+    /// The graph within, where the kind is `graph` or `repeat`.
+    pub(crate) body: Option<Arc<Body>>,
+    pub(crate) muted: bool,
+    /// What it does while it is muted.
+    pub(crate) bypass: Option<Arc<NodeKind>>,
     pub(crate) inputs: BTreeMap<String, Source>,
     pub(crate) position: Option<[f64; 2]>,
     pub(crate) note: String,
@@ -87,6 +97,32 @@ impl Node {
     /// Its kind; `None` for a placeholder of a kind that the catalogue does not know.
     pub fn kind(&self) -> Option<&Arc<NodeKind>> {
         self.kind.as_ref()
+    }
+
+    /// The graph within, where its kind is `graph` or `repeat`.
+    pub fn body(&self) -> Option<&Arc<Body>> {
+        self.body.as_ref()
+    }
+
+    /// Whether it passes its inputs on in place of doing its work.
+    pub fn is_muted(&self) -> bool {
+        self.muted
+    }
+
+    /// What it does: that of its kind, or, while it is muted, passing on.
+    pub fn acting_kind(&self) -> Option<&Arc<NodeKind>> {
+        if self.muted { self.bypass.as_ref() } else { self.kind.as_ref() }
+    }
+
+    pub(crate) fn set_kind(&mut self, kind: Option<Arc<NodeKind>>) {
+        self.bypass = kind.as_ref().filter(|_| self.muted).map(|kind| Arc::new(NodeKind::bypass(kind)));
+        self.kind = kind;
+    }
+
+    pub(crate) fn set_muted(&mut self, muted: bool) -> bool {
+        let was = std::mem::replace(&mut self.muted, muted);
+        self.set_kind(self.kind.clone());
+        was
     }
 
     /// What the input holds; `None` where it holds its default or nothing.
@@ -197,19 +233,46 @@ pub enum ConnectError {
         wanted: &'static str,
     },
     /// The link would close a cycle.
-    #[error("the link would close the cycle {}: a node can't depend on its own result", .0.join(" -> "))]
+    #[error("the link would close the cycle {}: a node can't depend on its own result", around(.0))]
     Cycle(
         /// Names of the nodes around the cycle; the first is repeated at the end.
         Vec<String>,
     ),
 }
 
-fn did_you_mean(suggestion: Option<&str>) -> String {
+pub(crate) fn did_you_mean(suggestion: Option<&str>) -> String {
     suggestion.map(|s| format!("; did you mean \"{s}\"?")).unwrap_or_default()
 }
 
 fn list(names: &[String]) -> String {
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+}
+
+/// Most nodes of a cycle that a message names.
+const MOST_NAMED: usize = 12;
+
+/// The nodes around a cycle; of a long one the beginning and the end.
+fn around(names: &[String]) -> String {
+    if names.len() <= MOST_NAMED {
+        return names.join(" -> ");
+    }
+    let half = MOST_NAMED / 2;
+    let (first, last) = (names[..half].join(" -> "), names[names.len() - half..].join(" -> "));
+    format!("{first} -> ({} more) -> {last}", names.len() - 2 * half)
+}
+
+/// Whether a node, parameter or output may be named so.
+pub(crate) fn valid_name(name: &str) -> bool {
+    let allowed = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | ' ');
+    name.trim() == name && !name.is_empty() && name.chars().count() <= 200 && name.chars().all(allowed)
+}
+
+/// A node that was taken out of its graph, with the links that left it.
+pub(crate) struct Taken {
+    pub(crate) node: Node,
+    pub(crate) outgoing: Vec<Outgoing>,
+    /// Outputs of the graph that came from it: their names, and the output of the node.
+    pub(crate) promoted: Vec<(String, String)>,
 }
 
 static NEXT_IDENTITY: AtomicU64 = AtomicU64::new(0);
@@ -218,8 +281,10 @@ static NEXT_IDENTITY: AtomicU64 = AtomicU64::new(0);
 #[derive(Debug)]
 pub struct Graph {
     pub(crate) nodes: BTreeMap<NodeId, Node>,
+    pub(crate) parameters: Vec<Parameter>,
+    pub(crate) outputs: Vec<GraphOutput>,
     names: HashMap<String, NodeId>,
-    topology: Topology,
+    pub(crate) topology: Topology,
     next: u32,
     revision: u64,
     identity: u64,
@@ -229,6 +294,11 @@ pub struct Graph {
     pub(crate) unknown_fields: Vec<(String, String)>,
     /// Layout entries of the file that belong to no node.
     pub(crate) unknown_layout: Vec<(String, String)>,
+    /// With which versions of kinds that the catalogue does not know the file was written.
+    pub(crate) unknown_kinds: BTreeMap<String, u32>,
+    /// Parameters and outputs of the file that could not be understood: names and texts, kept as they were.
+    pub(crate) unread_parameters: Vec<(String, String)>,
+    pub(crate) unread_outputs: Vec<(String, String)>,
 }
 
 impl Default for Graph {
@@ -241,6 +311,8 @@ impl Clone for Graph {
     fn clone(&self) -> Self {
         Self {
             nodes: self.nodes.clone(),
+            parameters: self.parameters.clone(),
+            outputs: self.outputs.clone(),
             names: self.names.clone(),
             topology: self.topology.clone(),
             next: self.next,
@@ -250,6 +322,9 @@ impl Clone for Graph {
             notes: self.notes.clone(),
             unknown_fields: self.unknown_fields.clone(),
             unknown_layout: self.unknown_layout.clone(),
+            unknown_kinds: self.unknown_kinds.clone(),
+            unread_parameters: self.unread_parameters.clone(),
+            unread_outputs: self.unread_outputs.clone(),
         }
     }
 }
@@ -259,6 +334,8 @@ impl Graph {
     pub fn new() -> Self {
         Self {
             nodes: BTreeMap::new(),
+            parameters: Vec::new(),
+            outputs: Vec::new(),
             names: HashMap::new(),
             topology: Topology::default(),
             next: 0,
@@ -267,6 +344,9 @@ impl Graph {
             notes: String::new(),
             unknown_fields: Vec::new(),
             unknown_layout: Vec::new(),
+            unknown_kinds: BTreeMap::new(),
+            unread_parameters: Vec::new(),
+            unread_outputs: Vec::new(),
         }
     }
 
@@ -290,9 +370,10 @@ impl Graph {
         closest(name, self.nodes.values().map(Node::name))
     }
 
-    /// The nodes that are results of the graph: what is evaluated when nothing else is asked for.
+    /// The nodes that are results of the graph: what is evaluated when nothing else is asked for. A muted node is none.
     pub fn results(&self) -> Vec<NodeId> {
-        self.nodes().filter(|(_, n)| n.kind.as_ref().is_some_and(|k| k.gives_result())).map(|(id, _)| id).collect()
+        let is_result = |n: &Node| n.acting_kind().is_some_and(|k| k.gives_result());
+        self.nodes().filter(|(_, n)| is_result(n)).map(|(id, _)| id).collect()
     }
 
     /// The inputs that a node feeds: node and name of the input, ordered.
@@ -300,7 +381,8 @@ impl Graph {
         self.topology.fed_by(node)
     }
 
-    /// The nodes that these depend on, themselves included, in the order of the graph.
+    /// The nodes that these depend on, themselves included, in the order of the graph. A muted node depends only on what
+    /// it passes on.
     pub fn upstream(&self, nodes: &[NodeId]) -> Vec<NodeId> {
         let mut reached = BTreeSet::new();
         let mut stack = nodes.to_vec();
@@ -308,7 +390,7 @@ impl Graph {
             if let Some(node) = self.nodes.get(&id)
                 && reached.insert(id)
             {
-                let links = node.inputs.values().filter_map(|source| match source {
+                let links = node.active_sources().filter_map(|source| match source {
                     Source::Link(link) => Some(link.node),
                     _ => None,
                 });
@@ -334,7 +416,12 @@ impl Graph {
         self.next as usize
     }
 
-    fn touch(&mut self, id: NodeId) {
+    /// Marks the graph as changed, and no node.
+    pub(crate) fn touch_all(&mut self) {
+        self.revision += 1;
+    }
+
+    pub(crate) fn touch(&mut self, id: NodeId) {
         self.revision += 1;
         if let Some(node) = self.nodes.get_mut(&id) {
             node.changed_at = self.revision;
@@ -342,8 +429,7 @@ impl Graph {
     }
 
     fn check_name(&self, name: &str) -> Result<(), GraphError> {
-        let allowed = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | ' ');
-        if name.trim() != name || name.is_empty() || name.chars().count() > 200 || !name.chars().all(allowed) {
+        if !valid_name(name) {
             return Err(GraphError::BadName(name.to_owned()));
         }
         if self.names.contains_key(name) {
@@ -373,6 +459,9 @@ impl Graph {
                 name: name.to_owned(),
                 kind_name: kind_name.to_owned(),
                 kind,
+                body: None,
+                muted: false,
+                bypass: None,
                 inputs: BTreeMap::new(),
                 position: None,
                 note: String::new(),
@@ -392,7 +481,11 @@ impl Graph {
     /// Unknown kind, or a name that is taken or can't be written.
     pub fn add(&mut self, catalogue: &Catalogue, kind: &str, name: &str) -> Result<NodeId, GraphError> {
         let (id, known) = (self.id_after(0), Self::known_kind(catalogue, kind)?);
-        self.insert(id, name, kind, Some(known)).map(|()| id)
+        self.insert(id, name, kind, Some(known))?;
+        if let Some(node) = self.nodes.get_mut(&id) {
+            node.body = Body::empty(kind);
+        }
+        Ok(id)
     }
 
     /// The kind of that name, or an error that suggests another.
@@ -418,7 +511,7 @@ impl Graph {
     }
 
     /// Removes a node and gives it back with the links that left it.
-    pub(crate) fn take(&mut self, id: NodeId) -> Result<(Node, Vec<Outgoing>), GraphError> {
+    pub(crate) fn take(&mut self, id: NodeId) -> Result<Taken, GraphError> {
         let fed = self.topology.fed_by(id);
         let node = self.nodes.remove(&id).ok_or(GraphError::NoSuchNode)?;
         let mut outgoing = Vec::with_capacity(fed.len());
@@ -430,10 +523,19 @@ impl Graph {
             }
             self.touch(to);
         }
+        let mut promoted = Vec::new();
+        for output in &mut self.outputs {
+            if let OutputSource::Link(link) = &output.from
+                && link.node == id
+            {
+                promoted.push((output.name.clone(), link.output.clone()));
+                output.from = OutputSource::Nothing;
+            }
+        }
         self.names.remove(&node.name);
         self.topology.remove(id);
         self.revision += 1;
-        Ok((node, outgoing))
+        Ok(Taken { node, outgoing, promoted })
     }
 
     /// Forgets that identities from this one on were given: for what was added and taken back at once.
@@ -483,29 +585,26 @@ impl Graph {
     ) -> Result<Option<Source>, GraphError> {
         let node = self.nodes.get(&id).ok_or(GraphError::NoSuchNode)?;
         if let Some(kind) = &node.kind {
-            let spec = kind.find_input(input).ok_or_else(|| GraphError::NoSuchInput {
-                node: node.name.clone(),
-                kind: node.kind_name.clone(),
-                port: input.to_owned(),
-                known: kind.inputs().iter().map(|i| i.name.clone()).collect(),
-            })?;
+            let spec = kind.find_input(input).ok_or_else(|| self.no_such_input(node, kind, input))?;
             if let Some(reason) = spec.refuses(&literal) {
                 return Err(GraphError::BadLiteral { node: node.name.clone(), port: input.to_owned(), reason });
             }
-            // An integer at a number's input is that number: it must hash like one.
-            let literal = match literal {
-                #[expect(clippy::cast_precision_loss, reason = "what would be rounded was refused above")]
-                Literal::Integer(integer) if spec.wire == crate::WireType::of::<f64>() => {
-                    Literal::Number(integer as f64)
-                }
-                other => other,
-            };
+            let literal = spec.normal(literal);
             Ok(self.put(id, input, Some(Source::literal(literal))))
         } else {
             if let Some(reason) = literal.not_finite() {
                 return Err(GraphError::BadLiteral { node: node.name.clone(), port: input.to_owned(), reason });
             }
             Ok(self.put(id, input, Some(Source::literal(literal))))
+        }
+    }
+
+    pub(crate) fn no_such_input(&self, node: &Node, kind: &NodeKind, input: &str) -> GraphError {
+        GraphError::NoSuchInput {
+            node: node.name.clone(),
+            kind: node.kind_name.clone(),
+            port: input.to_owned(),
+            known: kind.inputs().iter().map(|i| i.name.clone()).collect(),
         }
     }
 
@@ -553,22 +652,6 @@ impl Graph {
     ) -> Result<(), ConnectError> {
         self.check_ports(catalogue, from, output, to, input)?;
         self.check_acyclic(from, to)
-    }
-
-    /// Whether a link would close a cycle.
-    pub(crate) fn check_acyclic(&self, from: NodeId, to: NodeId) -> Result<(), ConnectError> {
-        match self.topology.cycle_closed_by(from, to) {
-            None => Ok(()),
-            Some(path) => {
-                let names = path.iter().chain(path.first()).filter_map(|id| self.nodes.get(id));
-                Err(ConnectError::Cycle(names.map(|n| n.name.clone()).collect()))
-            }
-        }
-    }
-
-    /// For each of these links, whether it can't be part of a cycle if all of them are added.
-    pub(crate) fn harmless(&self, links: impl Iterator<Item = (NodeId, NodeId)> + Clone) -> Vec<bool> {
-        self.topology.harmless(links)
     }
 
     /// Whether the ports of a link exist and their types fit.

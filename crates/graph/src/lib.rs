@@ -39,18 +39,24 @@
 //! only what depends on it; nothing that was loaded from a file is dropped when it is saved again, but for comments
 //! and the layout of the text.
 
+mod body;
 mod catalogue;
 pub mod edit;
 mod evaluate;
 mod examination;
 pub mod file;
+mod former_names;
 pub mod freeze;
 mod graph;
 pub mod guide;
 pub mod harness;
+mod interface;
+mod list;
 mod literal;
+mod mute;
 mod node_kind;
 mod one_line;
+mod parameter;
 mod port;
 mod ports;
 mod report;
@@ -58,6 +64,7 @@ mod topology;
 mod unknown_fields;
 mod value;
 
+pub use body::{Body, BodyError, BodySource, Repeat};
 pub use catalogue::{Catalogue, CatalogueError, closest};
 pub use edit::{Edit, EditError, History, NodeRecord};
 pub use evaluate::{
@@ -65,9 +72,12 @@ pub use evaluate::{
     OutcomeState, Request,
 };
 pub use examination::Examination;
+pub use former_names::InputHandle;
 pub use graph::{ConnectError, Graph, GraphError, Link, Node, NodeId, Source};
+pub use interface::{GraphOutput, InterfaceError, OutputSource};
 pub use literal::{Choice, Colour, FilePath, Literal, LiteralKind, Stroke, StrokePoint, Strokes, Vector};
 pub use node_kind::{ChoiceInput, Choices, Input, NodeKind, OptionalInput, Output};
+pub use parameter::Parameter;
 pub use port::{InputSpec, OptionSpec, OutputSpec, Range, Unit};
 pub use ports::{AtPort, NodeError, Ports};
 pub use report::{Cell, Column, Figure, FigureHandle, FigureSpec, Report, Table, TableHandle, TableSpec};

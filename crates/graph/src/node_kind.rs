@@ -6,11 +6,12 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use crate::examination::Examination;
+use crate::former_names::FormerNames;
 use crate::literal::{Choice, Colour, FilePath, Literal, Strokes, Vector};
 use crate::port::{InputSpec, OptionSpec, OutputSpec, Range, Unit};
 use crate::ports::{NodeError, Ports};
 use crate::report::{Column, FigureHandle, FigureSpec, TableHandle, TableSpec};
-use crate::value::{Wire, WireType};
+use crate::value::{ContentHash, Wire, WireType};
 
 /// Handle of an input that always has a value. Reading it as another type does not compile.
 pub struct Input<T> {
@@ -65,15 +66,20 @@ pub struct NodeKind {
     category: String,
     description: String,
     reference: String,
-    inputs: Vec<InputSpec>,
-    outputs: Vec<OutputSpec>,
+    pub(crate) inputs: Vec<InputSpec>,
+    pub(crate) outputs: Vec<OutputSpec>,
     is_result: bool,
     evaluate: Option<Arc<EvaluateFn>>,
     examine: Option<Arc<ExamineFn>>,
-    figures: Vec<FigureSpec>,
-    tables: Vec<TableSpec>,
+    pub(crate) figures: Vec<FigureSpec>,
+    pub(crate) tables: Vec<TableSpec>,
     /// Indices of the inputs whose files it reads.
     file_inputs: Vec<usize>,
+    pub(crate) former: FormerNames,
+    /// Which input a muted node passes on at an output, where it is not the first one of that type.
+    pub(crate) passes: Vec<(usize, usize)>,
+    /// Of a kind with a body: the hash of that body.
+    pub(crate) content: Option<ContentHash>,
 }
 
 impl fmt::Debug for NodeKind {
@@ -107,6 +113,9 @@ impl NodeKind {
             figures: Vec::new(),
             tables: Vec::new(),
             file_inputs: Vec::new(),
+            former: FormerNames::default(),
+            passes: Vec::new(),
+            content: None,
         }
     }
 
@@ -343,6 +352,11 @@ impl NodeKind {
     /// The output of that name, with its place.
     pub fn find_output(&self, name: &str) -> Option<(usize, &OutputSpec)> {
         self.outputs.iter().enumerate().find(|(_, o)| o.name == name)
+    }
+
+    /// Whether its nodes have a body: a graph that they evaluate.
+    pub fn has_body(&self) -> bool {
+        self.content.is_some()
     }
 
     pub(crate) fn evaluate_fn(&self) -> Option<&EvaluateFn> {

@@ -59,7 +59,7 @@ pub struct OptionSpec {
 }
 
 /// An input of a node kind.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct InputSpec {
     /// Name, `kebab-case`, unique among the inputs of its kind.
     pub name: String,
@@ -115,6 +115,15 @@ impl InputSpec {
         literal.not_finite().or_else(|| self.refuses_value(&literal.to_value()))
     }
 
+    /// A literal that fits, as it is kept: an integer at a number's input is that number, because it must hash like one.
+    pub(crate) fn normal(&self, literal: Literal) -> Literal {
+        match literal {
+            #[expect(clippy::cast_precision_loss, reason = "what would be rounded does not fit")]
+            Literal::Integer(integer) if self.wire == WireType::of::<f64>() => Literal::Number(integer as f64),
+            other => other,
+        }
+    }
+
     /// Says why a value of the right type is out of range or no option; `None` where it is fine.
     pub(crate) fn refuses_value(&self, value: &Value) -> Option<String> {
         let unit = if self.unit == Unit::None { String::new() } else { format!(" {}", self.unit) };
@@ -165,7 +174,7 @@ fn spelled(literal: &Literal) -> String {
 }
 
 /// An output of a node kind.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct OutputSpec {
     /// Name, `kebab-case`, unique among the outputs of its kind.
     pub name: String,

@@ -201,6 +201,14 @@ impl<'a> Ports<'a> {
         }
     }
 
+    /// Hands the value of an input on at an output.
+    pub(crate) fn pass(&mut self, input: usize, output: usize) {
+        let value = self.inputs.get(input).cloned().flatten();
+        if let Some(slot) = self.outputs.get_mut(output) {
+            *slot = value;
+        }
+    }
+
     /// Says what the node decided, in plain words.
     pub fn note(&mut self, note: impl Display) {
         self.report.note(note);

@@ -140,6 +140,38 @@ impl Report {
         texts(&self.notes) + texts(&self.warnings) + figures.sum::<usize>() + tables.sum::<usize>()
     }
 
+    /// Adds what another says.
+    pub(crate) fn append(&mut self, mut other: Self) {
+        self.notes.append(&mut other.notes);
+        self.warnings.append(&mut other.warnings);
+        self.figures.append(&mut other.figures);
+        self.tables.append(&mut other.tables);
+    }
+
+    /// Takes over what a node within a body said: notes and warnings behind the way to it, which may say for which time,
+    /// and figures and tables under the name that the kind declares them by.
+    pub(crate) fn absorb(&mut self, way: &str, node: &str, other: &Self) {
+        self.notes.extend(other.notes.iter().map(|note| format!("{way}: {note}")));
+        self.warnings.extend(other.warnings.iter().map(|warning| format!("{way}: {warning}")));
+        let figures = other.figures.iter().map(|figure| Figure { name: inside(node, &figure.name), ..figure.clone() });
+        self.figures.extend(figures);
+        let tables = other.tables.iter().map(|table| Table { name: inside(node, &table.name), ..table.clone() });
+        self.tables.extend(tables);
+    }
+
+    /// Keeps what a body says within bounds: parts of parts of parts could say the same a billion times.
+    pub(crate) fn bounded(mut self) -> Self {
+        let said = [self.notes.len(), self.warnings.len(), self.figures.len(), self.tables.len()];
+        if said.into_iter().any(|count| count > MOST_SAID) {
+            self.notes.truncate(MOST_SAID);
+            self.warnings.truncate(MOST_SAID);
+            self.figures.truncate(MOST_SAID);
+            self.tables.truncate(MOST_SAID);
+            self.warnings.push(format!("the nodes within say more than {MOST_SAID} things; the others are left out"));
+        }
+        self
+    }
+
     /// What was said first, and behind it what was said later.
     pub(crate) fn followed_by(&self, later: &Self) -> Self {
         let mut both = self.clone();
@@ -149,6 +181,14 @@ impl Report {
         both.tables.extend_from_slice(&later.tables);
         both
     }
+}
+
+/// Notes that a body passes on at most, and likewise warnings, figures and tables.
+const MOST_SAID: usize = 100_000;
+
+/// Name of a figure or table of a node within a body.
+pub(crate) fn inside(node: &str, name: &str) -> String {
+    format!("{node}/{name}")
 }
 
 /// A figure that a node kind declares with [`NodeKind::figure`].

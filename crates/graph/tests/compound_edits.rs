@@ -16,6 +16,7 @@ fn inputs(rig: &Rig, name: &str) -> Vec<String> {
             format!("{input} = {}.{}", rig.graph.node(link.node).unwrap().name(), link.output)
         }
         maquette_graph::Source::Literal { literal, .. } => format!("{input} = {literal:?}"),
+        maquette_graph::Source::Parameter(name) => format!("{input} = {name}"),
         maquette_graph::Source::Unread(text) => format!("{input} ? {text}"),
     });
     spelled.collect()

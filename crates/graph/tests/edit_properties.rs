@@ -6,10 +6,14 @@
 mod kinds;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use kinds::Rig;
+use kinds::{Rig, Samples};
 use maquette_graph::edit::compound::{self, Incoming};
-use maquette_graph::{Edit, Graph, History, Literal, NodeId, NodeRecord, Source, file};
+use maquette_graph::{
+    Catalogue, Edit, Evaluator, Graph, GraphOutput, History, Literal, NodeId, NodeRecord, OutcomeState, OutputSource,
+    Parameter, Repeat, Request, Source, WireType, file,
+};
 use proptest::prelude::*;
 
 /// A graph with text that is not understood, so that edits meet it.
@@ -40,6 +44,21 @@ enum Deed {
     Duplicate(Vec<usize>, bool),
     CopyPaste(Vec<usize>),
     CutPaste(Vec<usize>),
+    Mute(usize, bool),
+    AddParameter(usize, String, Option<Literal>, bool),
+    RemoveParameter(usize),
+    ChangeParameter(usize, String, Option<Literal>),
+    SetParameter(usize, Option<Literal>),
+    Use(usize, usize, usize),
+    AddOutput(usize, String, usize, usize),
+    RemoveOutput(usize),
+    ChangeOutput(usize, String, usize, usize),
+    Promote(usize, usize),
+    Group(Vec<usize>, String),
+    Ungroup(usize),
+    /// Another node's graph, repeated in some way.
+    SetBody(usize, usize, usize),
+    Within(usize, Vec<Deed>),
     Undo,
     Redo,
     Jump(usize),
@@ -66,6 +85,21 @@ fn literal() -> impl Strategy<Value = Literal> {
 
 fn deed() -> impl Strategy<Value = Deed> {
     let n = any::<usize>;
+    let deeds = prop::collection::vec(plain_deed(), 1..4);
+    let more = prop::collection::vec(prop_oneof![2 => plain_deed(), 1 => plain_deed_within()], 1..4);
+    prop_oneof![
+        12 => plain_deed(),
+        2 => (n(), deeds).prop_map(|(node, deeds)| Deed::Within(node, deeds)),
+        1 => (n(), more).prop_map(|(node, deeds)| Deed::Within(node, deeds)),
+    ]
+}
+
+fn plain_deed_within() -> impl Strategy<Value = Deed> {
+    (any::<usize>(), prop::collection::vec(plain_deed(), 1..3)).prop_map(|(node, deeds)| Deed::Within(node, deeds))
+}
+
+fn plain_deed() -> impl Strategy<Value = Deed> {
+    let n = any::<usize>;
     let some = || prop::collection::vec(any::<usize>(), 1..4);
     let place = || prop::option::of(prop::array::uniform2(-1e3..1e3));
     prop_oneof![
@@ -86,9 +120,37 @@ fn deed() -> impl Strategy<Value = Deed> {
         1 => (some(), any::<bool>()).prop_map(|(nodes, keep)| Deed::Duplicate(nodes, keep)),
         1 => some().prop_map(Deed::CopyPaste),
         1 => some().prop_map(Deed::CutPaste),
+        2 => interface_deed(),
+        2 => body_deed(),
         2 => Just(Deed::Undo),
         1 => Just(Deed::Redo),
         1 => n().prop_map(Deed::Jump),
+    ]
+}
+
+fn interface_deed() -> impl Strategy<Value = Deed> {
+    let n = any::<usize>;
+    let value = || prop::option::of(literal());
+    prop_oneof![
+        3 => (n(), name(), value(), any::<bool>()).prop_map(|(at, name, value, o)| Deed::AddParameter(at, name, value, o)),
+        1 => n().prop_map(Deed::RemoveParameter),
+        2 => (n(), name(), value()).prop_map(|(which, name, value)| Deed::ChangeParameter(which, name, value)),
+        2 => (n(), value()).prop_map(|(which, value)| Deed::SetParameter(which, value)),
+        6 => (n(), n(), n()).prop_map(|(node, input, which)| Deed::Use(node, input, which)),
+        3 => (n(), name(), n(), n()).prop_map(|(at, name, node, output)| Deed::AddOutput(at, name, node, output)),
+        1 => n().prop_map(Deed::RemoveOutput),
+        2 => (n(), name(), n(), n()).prop_map(|(which, name, node, out)| Deed::ChangeOutput(which, name, node, out)),
+    ]
+}
+
+fn body_deed() -> impl Strategy<Value = Deed> {
+    let n = any::<usize>;
+    prop_oneof![
+        1 => (n(), any::<bool>()).prop_map(|(node, muted)| Deed::Mute(node, muted)),
+        2 => (n(), n()).prop_map(|(node, input)| Deed::Promote(node, input)),
+        4 => (prop::collection::vec(n(), 1..5), name()).prop_map(|(nodes, name)| Deed::Group(nodes, name)),
+        1 => n().prop_map(Deed::Ungroup),
+        3 => (n(), n(), n()).prop_map(|(node, from, repeat)| Deed::SetBody(node, from, repeat)),
     ]
 }
 
@@ -112,8 +174,7 @@ fn outputs(graph: &Graph, node: NodeId) -> Vec<String> {
 }
 
 /// The edits of a deed; `None` where there is nothing to do it to, or it is refused.
-fn edits(rig: &Rig, deed: &Deed) -> Option<Vec<Edit>> {
-    let (graph, catalogue) = (&rig.graph, &rig.catalogue);
+fn edits(graph: &Graph, catalogue: &Catalogue, deed: &Deed) -> Option<Vec<Edit>> {
     let ids: Vec<_> = graph.nodes().map(|(id, _)| id).collect();
     let node = |index: &usize| pick(&ids, *index);
     let nodes = |indices: &[usize]| -> Vec<NodeId> { indices.iter().filter_map(node).collect() };
@@ -179,17 +240,116 @@ fn edits(rig: &Rig, deed: &Deed) -> Option<Vec<Edit>> {
             let plan = compound::paste(&without, catalogue, &text, [0.0; 2]).unwrap();
             return Some(cut.into_iter().chain(plan.edits).collect());
         }
+        Deed::Mute(n, muted) => Edit::Mute { node: node(n)?, muted: *muted },
+        Deed::AddParameter(at, name, value, optional) => {
+            let parameter = match value {
+                Some(value) => Parameter::new(name, value.clone()).describe("Something."),
+                None if *optional => Parameter::optional(name, WireType::of::<Samples>()),
+                None => Parameter::required(name, WireType::of::<f64>()).soft_range(0.0, 1.0),
+            };
+            Edit::AddParameter { index: at % (1 + graph.parameters().len()), parameter: parameter.into() }
+        }
+        Deed::RemoveParameter(which) => Edit::RemoveParameter(parameter(graph, *which)?.name().to_owned()),
+        Deed::ChangeParameter(which, name, value) => {
+            let old = parameter(graph, *which)?.name().to_owned();
+            let parameter = match value {
+                Some(value) => Parameter::new(name, value.clone()),
+                None => Parameter::required(name, WireType::of::<f64>()),
+            };
+            Edit::ChangeParameter { name: old, parameter: parameter.into() }
+        }
+        Deed::SetParameter(which, literal) => {
+            Edit::SetParameter { parameter: parameter(graph, *which)?.name().to_owned(), literal: literal.clone() }
+        }
+        Deed::Use(n, input, which) => {
+            let (node, parameter) = (node(n)?, parameter(graph, *which)?.name().to_owned());
+            Edit::UseParameter { node, input: pick(&inputs(graph, node), *input)?, parameter }
+        }
+        Deed::AddOutput(at, name, n, output) => {
+            let from = node(n)?;
+            let output = GraphOutput::new(name, from, pick(&outputs(graph, from), *output)?);
+            Edit::AddOutput { index: at % (1 + graph.outputs().len()), output: output.into() }
+        }
+        Deed::RemoveOutput(which) => Edit::RemoveOutput(output(graph, *which)?.name().to_owned()),
+        Deed::ChangeOutput(which, name, n, from) => {
+            let (old, node) = (output(graph, *which)?.name().to_owned(), node(n)?);
+            let output = GraphOutput::new(name, node, pick(&outputs(graph, node), *from)?).describe("Out.");
+            Edit::ChangeOutput { name: old, output: output.into() }
+        }
+        Deed::Promote(n, input) => {
+            let node = node(n)?;
+            let input = pick(&inputs(graph, node), *input)?;
+            return compound::promote(graph, node, &input).ok().map(|plan| plan.edits);
+        }
+        Deed::Group(list, name) => {
+            return compound::group(graph, catalogue, &nodes(list), name).ok().map(|plan| plan.edits);
+        }
+        Deed::Ungroup(n) => {
+            let bodies: Vec<_> = ids.iter().copied().filter(|id| graph.node(*id).unwrap().body().is_some()).collect();
+            return compound::ungroup(graph, catalogue, pick(&bodies, *n)?).ok().map(|plan| plan.edits);
+        }
+        Deed::SetBody(n, from, repeat) => {
+            let bodies: Vec<_> = ids.iter().copied().filter(|id| graph.node(*id).unwrap().body().is_some()).collect();
+            let body = graph.node(pick(&bodies, *from)?).unwrap().body().unwrap();
+            let inner = body.graph()?;
+            let repeat = match repeat % 4 {
+                0 => Repeat::Once,
+                1 => Repeat::Times,
+                2 => Repeat::Each(parameter(inner, *from)?.name().to_owned()),
+                _ => Repeat::FeedBack(
+                    [(parameter(inner, *from)?.name().to_owned(), output(inner, *n)?.name().to_owned())].into(),
+                ),
+            };
+            Edit::SetBody { node: pick(&bodies, *n)?, body: Arc::new((**body).clone().repeated(repeat)) }
+        }
+        Deed::Within(n, deeds) => {
+            let bodies: Vec<_> = ids.iter().copied().filter(|id| graph.node(*id).unwrap().body().is_some()).collect();
+            let node = pick(&bodies, *n)?;
+            let mut inner = graph.node(node)?.body()?.graph()?.clone();
+            let mut all = Vec::new();
+            for deed in deeds {
+                let planned = edits(&inner, catalogue, deed).unwrap_or_default();
+                if inner.apply_all(catalogue, &planned).is_ok() {
+                    all.extend(planned);
+                }
+            }
+            Edit::Within { node, edit: Edit::Several(all).into() }
+        }
         Deed::Undo | Deed::Redo | Deed::Jump(_) => return None,
     };
     Some(vec![edit])
+}
+
+fn parameter(graph: &Graph, which: usize) -> Option<&Parameter> {
+    graph.parameters().nth(which % graph.parameters().len().max(1))
+}
+
+fn output(graph: &Graph, which: usize) -> Option<&GraphOutput> {
+    graph.outputs().nth(which % graph.outputs().len().max(1))
 }
 
 fn state(graph: &Graph) -> (String, Vec<(NodeId, String)>) {
     (file::to_text(graph), graph.nodes().map(|(id, node)| (id, node.name().to_owned())).collect())
 }
 
-fn assert_sound(rig: &Rig) {
-    let graph = &rig.graph;
+fn assert_sound(graph: &Graph, catalogue: &Catalogue) {
+    for output in graph.outputs() {
+        if let OutputSource::Link(link) = output.source() {
+            let kind = graph.node(link.node).unwrap().kind();
+            assert!(kind.is_none_or(|kind| kind.find_output(&link.output).is_some()));
+        }
+    }
+    for (_, node) in graph.nodes() {
+        assert_eq!(node.acting_kind().is_some(), node.kind().is_some());
+        if let Some(body) = node.body() {
+            let made = body.kind(catalogue, node.kind_name());
+            if let Some(kind) = node.kind() {
+                let made = made.unwrap();
+                assert_eq!((made.inputs(), made.outputs()), (kind.inputs(), kind.outputs()));
+            }
+            body.graph().into_iter().for_each(|graph| assert_sound(graph, catalogue));
+        }
+    }
     let mut feeds: BTreeMap<NodeId, Vec<(NodeId, String)>> = BTreeMap::new();
     for (id, node) in graph.nodes() {
         assert_eq!(graph.find(node.name()), Some(id));
@@ -201,7 +361,7 @@ fn assert_sound(rig: &Rig) {
                     feeds.entry(link.node).or_default().push((id, input.to_owned()));
                     let given = from.kind().map(|kind| kind.find_output(&link.output).unwrap().1.wire);
                     if let (Some(given), Some(spec)) = (given, spec) {
-                        assert!(rig.catalogue.fits(given, spec.wire));
+                        assert!(catalogue.fits(given, spec.wire));
                     }
                     assert!(node.kind().is_none() || spec.is_some());
                 }
@@ -216,6 +376,10 @@ fn assert_sound(rig: &Rig) {
                     if let (Some(range), Some(number)) = (spec.and_then(|spec| spec.range), number) {
                         assert!(range.contains(number), "{number} at {input} of {}", node.name());
                     }
+                }
+                Source::Parameter(name) => {
+                    let given = graph.parameter(name).unwrap().wire();
+                    assert!(node.kind().is_none() || catalogue.fits(given, spec.unwrap().wire));
                 }
                 Source::Unread(_) => {}
             }
@@ -238,6 +402,31 @@ fn assert_sound(rig: &Rig) {
     assert!(left.is_empty(), "a cycle among {left:?}");
 }
 
+/// A rig whose numbers can be listed and collected.
+fn rig() -> Rig {
+    let mut rig = Rig::default();
+    rig.catalogue
+        .list::<Samples, f64>(|list| list.0.clone(), |items| Ok(Samples(items.iter().map(|n| **n).collect())))
+        .unwrap();
+    rig
+}
+
+/// What these nodes give, as text; for those that are there.
+fn given(rig: &Rig, names: &[String], threads: usize) -> Vec<String> {
+    let ids: Vec<_> = names.iter().filter_map(|name| rig.graph.find(name)).collect();
+    let options = maquette_graph::EvaluatorOptions { threads, ..Default::default() };
+    let evaluation = Evaluator::new(&options).evaluate(&rig.catalogue, &rig.graph, &Request::nodes(&ids));
+    let said = ids.iter().map(|id| match evaluation.outcome(*id).map(|outcome| &outcome.state) {
+        Some(OutcomeState::Done { values, .. }) => {
+            values.iter().flat_map(|values| values.iter()).map(|v| v.hash().to_string()).collect::<Vec<_>>().join(" ")
+        }
+        // A failure within a group is laid at the group.
+        Some(OutcomeState::Failed(_) | OutcomeState::Waiting(_)) => "nothing".to_owned(),
+        other => format!("{other:?}"),
+    });
+    said.collect()
+}
+
 fn live(rig: &mut Rig, deeds: &[Deed], together: usize) {
     let mut history = History::new();
     // The states before each step and after the last one, for the steps that are there at present.
@@ -250,7 +439,9 @@ fn live(rig: &mut Rig, deeds: &[Deed], together: usize) {
             _ => {
                 let before = state(&rig.graph);
                 // Copying nothing does nothing.
-                let Some(edits) = edits(rig, deed).filter(|edits| !edits.is_empty()) else { continue };
+                let Some(edits) = edits(&rig.graph, &rig.catalogue, deed).filter(|edits| !edits.is_empty()) else {
+                    continue;
+                };
                 let merges = together > 1;
                 if merges {
                     history.begin_merging("some", format!("{}", number / together));
@@ -269,9 +460,11 @@ fn live(rig: &mut Rig, deeds: &[Deed], together: usize) {
                 // A step that was merged replaces what the one before led to.
                 states.truncate(history.position());
                 states.push(state(&rig.graph));
-                assert_sound(rig);
+                assert_sound(&rig.graph, &rig.catalogue);
                 let text = file::to_text(&rig.graph);
-                assert_eq!(file::to_text(&file::from_text(&rig.catalogue, &text).unwrap().graph), text);
+                let again = file::from_text(&rig.catalogue, &text).unwrap();
+                assert_eq!(file::to_text(&again.graph), text);
+                assert_sound(&again.graph, &rig.catalogue);
             }
         }
         assert_eq!(state(&rig.graph), states[history.position()], "{deed:?}");
@@ -280,7 +473,7 @@ fn live(rig: &mut Rig, deeds: &[Deed], together: usize) {
     history.jump(&mut rig.graph, &rig.catalogue, usize::MAX).unwrap();
     for expected in states.iter().rev() {
         assert_eq!(&state(&rig.graph), expected);
-        assert_sound(rig);
+        assert_sound(&rig.graph, &rig.catalogue);
         history.undo(&mut rig.graph, &rig.catalogue).unwrap();
     }
     for expected in &states {
@@ -294,29 +487,67 @@ proptest! {
 
     #[test]
     fn what_is_done_is_undone_and_redone(deeds in prop::collection::vec(deed(), 0..80)) {
-        live(&mut Rig::default(), &deeds, 1);
+        live(&mut rig(), &deeds, 1);
     }
 
     #[test]
     fn so_it_is_with_what_is_not_understood(deeds in prop::collection::vec(deed(), 0..40), together in 1..6_usize) {
-        let mut rig = Rig::default();
+        let mut rig = rig();
         rig.graph = file::from_text(&rig.catalogue, STRANGE).unwrap().graph;
         live(&mut rig, &deeds, together);
     }
 
     #[test]
     fn undone_runs_nothing(deeds in prop::collection::vec(deed(), 0..30)) {
-        let mut rig = Rig::default();
+        let mut rig = rig();
         rig.chain(4);
         rig.evaluate(&["n0", "n1", "n2", "n3"]);
         let mut history = History::new();
         for deed in &deeds {
-            if let Some(edits) = edits(&rig, deed) {
+            if let Some(edits) = edits(&rig.graph, &rig.catalogue, deed) {
                 let _ = history.step(&mut rig.graph, &rig.catalogue, "step", &edits);
             }
         }
         let _ = rig.graph.find("n3").map(|_| rig.evaluate(&["n3"]));
         history.jump(&mut rig.graph, &rig.catalogue, 0).unwrap();
         prop_assert_eq!(rig.ran(&["n0", "n1", "n2", "n3"]), Vec::<String>::new());
+    }
+
+    #[test]
+    fn grouped_and_ungrouped_it_gives_the_same(
+        deeds in prop::collection::vec(deed(), 0..40),
+        selected in prop::collection::vec(any::<usize>(), 1..6),
+    ) {
+        let mut rig = rig();
+        rig.chain(5);
+        for deed in &deeds {
+            if let Some(edits) = edits(&rig.graph, &rig.catalogue, deed) {
+                let _ = rig.graph.apply_all(&rig.catalogue, &edits);
+            }
+        }
+        let ids: Vec<_> = rig.graph.nodes().map(|(id, _)| id).collect();
+        let selected: Vec<_> = selected.iter().filter_map(|index| pick(&ids, *index)).collect();
+        let Ok(plan) = compound::group(&rig.graph, &rig.catalogue, &selected, "a group") else { return Ok(()) };
+        let names = |graph: &Graph| graph.nodes().map(|(_, node)| node.name().to_owned()).collect::<Vec<_>>();
+        let all = names(&rig.graph);
+        let before_all = given(&rig, &all, 1);
+        prop_assert_eq!(&given(&rig, &all, 8), &before_all);
+        let inverses = rig.graph.apply_all(&rig.catalogue, &plan.edits).unwrap();
+        let outside: Vec<_> = names(&rig.graph).into_iter().filter(|name| all.contains(name)).collect();
+        let is_outside = |name: &&String| outside.contains(name);
+        let before: Vec<_> = all.iter().zip(&before_all).filter(|(name, _)| is_outside(name)).map(|(_, g)| g.clone()).collect();
+        // Where one of several nodes in the group fails, the whole group does, and others may wait for it.
+        let same = |before: &[String], after: &[String]| before.iter().zip(after).all(|(b, a)| a == b || a == "nothing");
+        let grouped = given(&rig, &outside, 1);
+        let some_fail = before_all.iter().any(|said| said == "nothing");
+        prop_assert!(if some_fail { same(&before, &grouped) } else { before == grouped }, "{before:?} {grouped:?}");
+        prop_assert_eq!(&given(&rig, &outside, 8), &grouped);
+        let group = plan.nodes[0];
+        if let Ok(back) = compound::ungroup(&rig.graph, &rig.catalogue, group) {
+            prop_assert_eq!(&back.remarks, &[]);
+            rig.graph.apply_all(&rig.catalogue, &back.edits).unwrap();
+            prop_assert_eq!(&given(&rig, &outside, 1), &before);
+        }
+        drop(inverses);
     }
 }

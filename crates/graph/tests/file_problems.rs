@@ -131,12 +131,12 @@ fn a_link_into_an_unknown_input_is_said_once() {
 
 #[test]
 fn unknown_fields_are_warnings_at_their_names() {
-    let text = "(\n  version: 1,\n  colour_space: (\n    // kept\n    \"x\",\n  ),\n  nodes: {\n    \"a\": (kind: \"add\", muted: true, r#is-old /* odd */ : [1, 2]),\n  },\n  größe: 5,\n)";
+    let text = "(\n  version: 1,\n  colour_space: (\n    // kept\n    \"x\",\n  ),\n  nodes: {\n    \"a\": (kind: \"add\", quiet: true, r#is-old /* odd */ : [1, 2]),\n  },\n  größe: 5,\n)";
     assert_eq!(
         problems(text),
         [
             "3:3: warning: the field \"colour_space\" is unknown to this version; it is kept; check its spelling, or update Maquette",
-            "8:24: warning: node \"a\": the field \"muted\" is unknown to this version; it is kept; check its spelling, or update Maquette",
+            "8:24: warning: node \"a\": the field \"quiet\" is unknown to this version; it is kept; check its spelling, or update Maquette",
             "8:58: warning: node \"a\": the field \"is-old\" is unknown to this version; it is kept; check its spelling, or update Maquette",
             "10:3: warning: the field \"größe\" is unknown to this version; it is kept; check its spelling, or update Maquette",
         ]
@@ -144,7 +144,7 @@ fn unknown_fields_are_warnings_at_their_names() {
     assert!(!load(text).has_errors());
     assert_kept(
         text,
-        &["colour_space: (\n    // kept\n    \"x\",\n  ),", "muted: true,", "r#is-old: [1, 2],", "größe: 5,"],
+        &["colour_space: (\n    // kept\n    \"x\",\n  ),", "quiet: true,", "r#is-old: [1, 2],", "größe: 5,"],
     );
 }
 
@@ -184,7 +184,7 @@ fn names_without_quotes_are_taken_as_they_are() {
 
 #[test]
 fn literals_that_can_not_be_read_are_kept() {
-    let expected = "write a number, true, false, Link(\"node.output\"), Text(\"...\"), Choice(\"...\"), Vector(x, y, z), \
+    let expected = "write a number, true, false, Link(\"node.output\"), Parameter(\"...\"), Text(\"...\"), Choice(\"...\"), Vector(x, y, z), \
                     Colour(r, g, b, a), File(\"...\") or Strokes([...])";
     let cases = [
         ("\"number\": \"n.sum\"", 11, "a bare text does not say what it is; write Link(\"node.output\"), Text(\"...\"), Choice(\"...\") or File(\"...\")".to_owned()),

@@ -13,6 +13,11 @@ use proptest::prelude::*;
 const SAMPLE: &str = r#"(
     version: 1,
     notes: "ä // \"b\"",
+    parameters: {
+        "p": (value: 2, range: (0.0, 9.0), soft_range: (1.0, 2.0), unit: "m", description: "d"),
+        "c": (value: Choice("up"), options: [("up", "u"), ("down", "d")]),
+        "s": (type: "samples", optional: true),
+    },
     nodes: {
         "größe": (kind: "count", note: "n", inputs: { "count": 5, "text": Text("a\nb") }),
         "all": (
@@ -25,7 +30,18 @@ const SAMPLE: &str = r#"(
             },
         ),
         "c": (kind: "add", muted: [1, /* two */ 2]),
+        "g": (kind: "graph", muted: true, inputs: { "x": Parameter("p") }, body: (
+            parameters: { "x": (value: 1.0) },
+            nodes: { "r": (kind: "repeat", feed_back: { "y": "z" }, inputs: { "y": Parameter("x") }, body: (
+                parameters: { "y": (value: 0.5), "index": (value: 0) },
+                nodes: { "a": (kind: "add", inputs: { "a": Parameter("y"), "b": Parameter("index") }) },
+                outputs: { "z": (from: "a.sum") },
+            )) },
+            outputs: { "x": (from: "r.z", description: "o") },
+        )),
+        "f": (kind: "graph", inputs: { "x": 1.5 }, body: (nodes: {}, parameters: { "x": (value: 1.0) })),
     },
+    outputs: { "o": (from: "g.x"), "n": (description: "from nothing") },
     layout: { "all": (1.0, 2.0) },
     later: {"x": Some(('y', ()))}, // end
 )
@@ -34,7 +50,7 @@ const SAMPLE: &str = r#"(
 #[test]
 fn a_file_cut_anywhere_is_noticed() {
     let catalogue = kinds::catalogue();
-    assert_eq!(file::from_text(&catalogue, SAMPLE).unwrap().problems.len(), 2);
+    assert_eq!(file::from_text(&catalogue, SAMPLE).unwrap().problems.len(), 3);
     let complete = SAMPLE.trim_end().len();
     for end in 0..complete {
         let cut = &SAMPLE.as_bytes()[..end];

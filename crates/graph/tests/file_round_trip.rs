@@ -17,6 +17,7 @@ fn content(graph: &Graph) -> Vec<String> {
             let source = match source {
                 Source::Literal { literal, value } => format!("{literal:?} {}", value.hash()),
                 Source::Link(link) => format!("{:?}.{}", graph.node(link.node).map(|n| n.name()), link.output),
+                Source::Parameter(name) => format!("parameter {name:?}"),
                 Source::Unread(text) => format!("unread {text}"),
             };
             lines.push(format!("  {input:?} {source}"));

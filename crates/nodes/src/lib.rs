@@ -15,6 +15,7 @@ mod surface;
 mod view_plane;
 pub mod wire;
 
+use maquette_geometry::mesh::join;
 use maquette_graph::{Catalogue, CatalogueError, NodeKind};
 
 /// Every node kind of this library, in the order of the source tree. A file that is not listed fails
@@ -53,6 +54,17 @@ pub fn catalogue() -> Result<Catalogue, CatalogueError> {
     catalogue.conversion::<wire::Curves, wire::Curve>(|curves| match curves.0.as_slice() {
         [curve] => Ok(wire::Curve(curve.clone())),
         several => Err(format!("{} curves arrive where one is wanted: choose it with a `pick` node", several.len())),
+    })?;
+    catalogue.list::<wire::Curves, wire::Curve>(
+        |curves| curves.0.iter().cloned().map(wire::Curve).collect(),
+        |curves| Ok(wire::Curves(curves.iter().map(|curve| curve.0.clone()).collect())),
+    )?;
+    catalogue.collect::<wire::Curves, wire::Curves>(|lists| {
+        Ok(wire::Curves(lists.iter().flat_map(|list| list.0.iter().cloned()).collect()))
+    })?;
+    catalogue.collect::<wire::Mesh, wire::Mesh>(|meshes| {
+        let joined = join(meshes.iter().map(|mesh| &*mesh.0)).map_err(|error| error.to_string())?;
+        Ok(wire::Mesh::new(joined))
     })?;
     frozen::register(&mut catalogue);
     for kind in kinds() {

@@ -6,6 +6,7 @@ use maquette_graph::{Graph, Literal, Node, NodeId};
 use serde::Serialize;
 
 use super::input::{Held, held, spelled};
+use super::interface;
 use super::pairing::Pairing;
 use super::strokes::{self, StrokeDifference};
 
@@ -57,6 +58,33 @@ pub(super) enum Difference {
         from: Option<String>,
         to: Option<String>,
     },
+    /// A parameter of the graph, as a file spells it.
+    Parameter {
+        parameter: String,
+        from: Option<String>,
+        to: Option<String>,
+    },
+    /// An output of the graph, as a file spells it.
+    Output {
+        output: String,
+        from: Option<String>,
+        to: Option<String>,
+    },
+    Muted {
+        node: String,
+        muted: bool,
+    },
+    /// Where the graph within a node stands, and how often it is evaluated.
+    Body {
+        node: String,
+        from: String,
+        to: String,
+    },
+    /// In the graph that is embedded in a node.
+    Within {
+        node: String,
+        difference: Box<Difference>,
+    },
     /// Where the editor draws a node.
     Layout {
         node: String,
@@ -85,10 +113,12 @@ pub(super) fn differences(first: &Graph, second: &Graph, pairing: &Pairing, layo
     if first.notes != second.notes {
         found.push(Difference::Note { node: None, from: first.notes.clone(), to: second.notes.clone() });
     }
+    interface::declarations(&mut found, first, second);
     fields(&mut found, None, first.unknown_fields(), second.unknown_fields());
     for (a, b) in &pairing.both {
         if let (Some(a), Some(b)) = (first.node(*a), second.node(*b)) {
             within(&mut found, [first, second], pairing, a, b);
+            interface::within(&mut found, a, b, layout);
             if layout && a.position() != b.position() {
                 found.push(Difference::Layout { node: b.name().to_owned(), from: a.position(), to: b.position() });
             }
@@ -115,6 +145,7 @@ fn within(found: &mut Vec<Difference>, graphs: [&Graph; 2], pairing: &Pairing, a
             (Held::Link(before), Held::Link(after)) => {
                 before.output == after.output && pairing.second_of.get(&before.node) == Some(&after.node)
             }
+            (Held::Parameter(before), Held::Parameter(after)) => before == after,
             (Held::Unread(before), Held::Unread(after)) => before == after,
             _ => false,
         };

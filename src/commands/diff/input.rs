@@ -8,6 +8,7 @@ pub(super) enum Held<'a> {
     /// A value, written or by default, with its hash.
     Literal(&'a Literal, ContentHash),
     Link(&'a Link),
+    Parameter(&'a str),
     /// Text that is not understood.
     Unread(&'a str),
 }
@@ -16,6 +17,7 @@ pub(super) fn held<'a>(node: &'a Node, input: &str) -> Held<'a> {
     match node.source(input) {
         Some(Source::Literal { literal, value }) => Held::Literal(literal, value.hash()),
         Some(Source::Link(link)) => Held::Link(link),
+        Some(Source::Parameter(name)) => Held::Parameter(name),
         Some(Source::Unread(text)) => Held::Unread(text),
         None => match node.kind().and_then(|kind| kind.find_input(input)?.default.as_ref()) {
             Some(literal) => Held::Literal(literal, literal.to_value().hash()),
@@ -38,16 +40,22 @@ pub(super) fn spelled(graph: &Graph, held: &Held<'_>) -> String {
             let name = graph.node(link.node).map_or("", Node::name);
             format!("Link({:?})", format!("{name}.{}", link.output))
         }
-        Held::Literal(literal, _) => match literal {
-            Literal::Number(number) => format!("{number:?}"),
-            Literal::Integer(integer) => integer.to_string(),
-            Literal::Boolean(flag) => flag.to_string(),
-            Literal::Text(text) => format!("Text({text:?})"),
-            Literal::Choice(option) => format!("Choice({option:?})"),
-            Literal::File(path) => format!("File({path:?})"),
-            Literal::Vector([x, y, z]) => format!("Vector({x:?}, {y:?}, {z:?})"),
-            Literal::Colour([r, g, b, a]) => format!("Colour({r:?}, {g:?}, {b:?}, {a:?})"),
-            Literal::Strokes(strokes) => format!("{} strokes", strokes.len()),
-        },
+        Held::Parameter(name) => format!("Parameter({name:?})"),
+        Held::Literal(literal, _) => spelled_literal(literal),
+    }
+}
+
+/// A value as a file spells it, on one line.
+pub(in crate::commands) fn spelled_literal(literal: &Literal) -> String {
+    match literal {
+        Literal::Number(number) => format!("{number:?}"),
+        Literal::Integer(integer) => integer.to_string(),
+        Literal::Boolean(flag) => flag.to_string(),
+        Literal::Text(text) => format!("Text({text:?})"),
+        Literal::Choice(option) => format!("Choice({option:?})"),
+        Literal::File(path) => format!("File({path:?})"),
+        Literal::Vector([x, y, z]) => format!("Vector({x:?}, {y:?}, {z:?})"),
+        Literal::Colour([r, g, b, a]) => format!("Colour({r:?}, {g:?}, {b:?}, {a:?})"),
+        Literal::Strokes(strokes) => format!("{} strokes", strokes.len()),
     }
 }

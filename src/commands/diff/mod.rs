@@ -3,20 +3,23 @@
 mod differences;
 mod geometry;
 mod input;
+mod interface;
 mod pairing;
 mod strokes;
 mod text;
 
 use std::path::{Path, PathBuf};
 
-use maquette_graph::file::Severity;
+use maquette_graph::file::{Project, Severity};
 use maquette_graph::{Catalogue, Evaluation, Evaluator, NodeId, OutcomeState, Request};
 use serde_json::json;
 
 use self::differences::{Difference, differences};
 use self::geometry::OutputDifference;
+pub(super) use self::input::spelled_literal;
 use self::pairing::{Pairing, pair};
 use super::graph_file::GraphFile;
+use super::project::ProjectArguments;
 use super::{Ended, console};
 
 /// Say what differs between two graphs: nodes added, removed and renamed, links, values and strokes. The order within
@@ -41,6 +44,8 @@ pub struct Arguments {
     /// Relative paths within both graphs start at this folder, not at their own; for a copy that lies elsewhere.
     #[arg(long, value_name = "FOLDER")]
     base: Option<PathBuf>,
+    #[command(flatten)]
+    project: ProjectArguments,
     /// For git's diff.NAME.command: the arguments that git gives, PATH OLD-FILE OLD-HEX OLD-MODE NEW-FILE NEW-HEX
     /// NEW-MODE. Always exits with 0, because git takes all else for a breakdown.
     #[arg(long, num_args = 1..=9, value_name = "ARGUMENTS", allow_hyphen_values = true)]
@@ -139,34 +144,39 @@ fn compare(
     second: &Path,
     base: Option<&Path>,
 ) -> Result<Comparison, Vec<String>> {
-    let (a, b) = match (open(catalogue, first), open(catalogue, second)) {
-        (Ok(a), Ok(b)) => (a, b),
-        (a, b) => return Err([a.err(), b.err()].into_iter().flatten().flatten().collect()),
-    };
+    let (a, b) =
+        match (open(catalogue, first, base, &arguments.project), open(catalogue, second, base, &arguments.project)) {
+            (Ok(a), Ok(b)) => (a, b),
+            (a, b) => return Err([a.err(), b.err()].into_iter().flatten().flatten().collect()),
+        };
     let pairing = pair(&a.loaded.graph, &b.loaded.graph);
     let differences = differences(&a.loaded.graph, &b.loaded.graph, &pairing, arguments.layout);
-    let outputs = if arguments.geometry { compare_results(catalogue, [&a, &b], &pairing, base)? } else { Vec::new() };
+    let outputs = if arguments.geometry { compare_results(catalogue, [&a, &b], &pairing)? } else { Vec::new() };
     Ok(Comparison { differences, outputs })
 }
 
 /// Reads a graph. What does not exist yet or any more, which git spells /dev/null, is an empty one.
-fn open(catalogue: &Catalogue, path: &Path) -> Result<GraphFile, Vec<String>> {
+fn open(
+    catalogue: &Catalogue,
+    path: &Path,
+    base: Option<&Path>,
+    project: &ProjectArguments,
+) -> Result<GraphFile, Vec<String>> {
     if path == Path::new("/dev/null") || path == Path::new("nul") {
-        return GraphFile::from_bytes(catalogue, path, b"(version: 1, nodes: {})".to_vec());
+        return GraphFile::from_bytes(catalogue, path, b"(version: 1, nodes: {})".to_vec(), base, Project::default());
     }
-    GraphFile::open(catalogue, path)
+    GraphFile::open_in(catalogue, path, base, project)
 }
 
 fn compare_results(
     catalogue: &Catalogue,
     [a, b]: [&GraphFile; 2],
     pairing: &Pairing,
-    base: Option<&Path>,
 ) -> Result<Vec<OutputDifference>, Vec<String>> {
     // What both graphs have in common is computed once.
     let mut evaluator = Evaluator::default();
-    let from = evaluate(catalogue, &mut evaluator, a, base)?;
-    let to = evaluate(catalogue, &mut evaluator, b, base)?;
+    let from = evaluate(catalogue, &mut evaluator, a)?;
+    let to = evaluate(catalogue, &mut evaluator, b)?;
     let name = |file: &GraphFile, id: NodeId| file.loaded.graph.node(id).map_or("", |n| n.name()).to_owned();
     let value = |evaluation: &Evaluation, id: NodeId| evaluation.values(id).and_then(|v| v.first().cloned());
     let [first, second] = [a, b].map(|file| file.loaded.graph.results());
@@ -192,12 +202,7 @@ fn compare_results(
 }
 
 /// Evaluates all results; where one can't be made there is nothing to measure, and the reason is the error.
-fn evaluate(
-    catalogue: &Catalogue,
-    evaluator: &mut Evaluator,
-    file: &GraphFile,
-    base: Option<&Path>,
-) -> Result<Evaluation, Vec<String>> {
+fn evaluate(catalogue: &Catalogue, evaluator: &mut Evaluator, file: &GraphFile) -> Result<Evaluation, Vec<String>> {
     let wrong: Vec<String> = file
         .loaded
         .problems
@@ -210,7 +215,7 @@ fn evaluate(
     if !wrong.is_empty() || !missing.is_empty() {
         return Err(wrong.into_iter().chain(missing).collect());
     }
-    let request = Request::nodes(&results).base(base.unwrap_or(file.base()));
+    let request = Request::nodes(&results).base(file.base()).project(&file.project);
     let evaluation = evaluator.evaluate(catalogue, &file.loaded.graph, &request);
     let failures: Vec<String> = evaluation
         .outcomes()

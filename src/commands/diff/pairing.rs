@@ -147,11 +147,13 @@ fn signature(graph: &Graph, id: NodeId, name: impl Fn(NodeId) -> Option<NodeId>)
         .sources()
         .filter_map(|(input, _)| match held(node, input) {
             Held::Link(link) => Some(format!("{input:?} link {:?}.{:?}", name(link.node), link.output)),
+            Held::Parameter(name) => Some(format!("{input:?} parameter {name:?}")),
             Held::Unread(text) => Some(format!("{input:?} text {text:?}")),
             // Written out or not, a default is the same.
             Held::Literal(_, hash) => (default_hash(node, input) != Some(hash)).then(|| format!("{input:?} {hash}")),
             Held::Nothing => None,
         })
         .collect();
-    format!("{:?} {inputs:?}", node.kind_name())
+    let body = node.body().map(|body| body.content().to_string()).unwrap_or_default();
+    format!("{:?} {inputs:?} {body} {}", node.kind_name(), node.is_muted())
 }

@@ -36,12 +36,28 @@ pub(super) fn lines(difference: &Difference) -> Vec<String> {
             };
             format!("~ {}field {field}: {} -> {}", whose(node), shown(from), shown(to))
         }
+        Difference::Parameter { parameter, from, to } => declared("parameter", parameter, from.as_ref(), to.as_ref()),
+        Difference::Output { output, from, to } => declared("output", output, from.as_ref(), to.as_ref()),
+        Difference::Muted { node, muted } => format!("~ \"{node}\" is {}", if *muted { "muted" } else { "not muted" }),
+        Difference::Body { node, from, to } => format!("~ \"{node}\": body {from} -> {to}"),
+        Difference::Within { node, difference } => {
+            return lines(difference).iter().map(|line| format!("in \"{node}\": {line}")).collect();
+        }
         Difference::Layout { node, from, to } => {
             let shown = |place: &Option<[f64; 2]>| place.map_or("nowhere".to_owned(), |[x, y]| format!("({x}, {y})"));
             format!("~ \"{node}\": layout {} -> {}", shown(from), shown(to))
         }
     };
     vec![line]
+}
+
+/// Something that the whole graph declares.
+fn declared(what: &str, name: &str, from: Option<&String>, to: Option<&String>) -> String {
+    match (from, to) {
+        (Some(from), Some(to)) => format!("~ {what} \"{name}\": {from} -> {to}"),
+        (Some(from), None) => format!("- {what} \"{name}\": {from}"),
+        (None, to) => format!("+ {what} \"{name}\": {}", to.map_or("", String::as_str)),
+    }
 }
 
 fn stroke_line(difference: &StrokeDifference) -> String {

@@ -43,12 +43,15 @@ impl Plan {
     pub(super) fn new(arguments: &Arguments) -> Result<Self, Vec<String>> {
         let catalogue = maquette_nodes::catalogue().map_err(|error| vec![format!("error: {error}")])?;
         let types = RefCell::new(Vec::new());
-        let Opened { file, targets, mut warnings, .. } = open(&catalogue, &arguments.evaluation, |found| {
+        let Opened { mut file, targets, mut warnings, .. } = open(&catalogue, &arguments.evaluation, |found| {
             types.borrow_mut().extend_from_slice(found);
             Ok(())
         })?;
         let file_warnings = warnings.clone();
         let variants = read_variants(arguments, &file)?;
+        for value in variants.axes.iter().flat_map(|axis| &axis.values) {
+            file.allow(&value.literal);
+        }
         if variants.repeated > 0 {
             let (left, repeated) = (variants.len(), variants.repeated);
             warnings.push(format!("warning: {repeated} samples repeat others and are left out; {left} are left"));
@@ -106,7 +109,7 @@ impl Plan {
     /// Says where files would be written over one another, or over what is read.
     fn check_files(&self, arguments: &Arguments) -> Result<(), String> {
         let mut taken = vec![(self.file.path.clone(), "the graph".to_owned())];
-        taken.extend(self.file.files().map(|(_, _, path)| (path, "a file that the graph reads".to_owned())));
+        taken.extend(self.file.files().into_iter().map(|path| (path, "a file that the graph reads".to_owned())));
         let others = [("--sheet", &arguments.sheet), ("--openjd", &arguments.openjd), ("the record", &self.record)];
         let others = others.into_iter().filter_map(|(what, path)| Some((path.clone()?, what)));
         let tables = self.tables.iter().map(|(path, _)| (path.clone(), "--table"));
@@ -227,7 +230,7 @@ impl Plan {
         parts.push(format!("keep going: {}", arguments.evaluation.keep_going));
         parts.push(format!("examine: {}", self.examine));
         parts.extend(self.limits.iter().map(Limit::to_string));
-        parts.extend(self.file.files().map(|(_, _, path)| contents.hash(&path)));
+        parts.extend(self.file.files().into_iter().map(|path| contents.hash(&path)));
         super::record::key(&parts.iter().map(String::as_str).collect::<Vec<_>>())
     }
 }

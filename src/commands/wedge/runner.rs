@@ -125,7 +125,7 @@ impl<'a> Runner<'a> {
         }
         // All that results depend on is asked for: what is remembered from the variant before has figures too.
         let asked = file.loaded.graph.upstream(targets);
-        let request = Request::nodes(&asked).base(file.base()).cancel(self.cancel);
+        let request = Request::nodes(&asked).base(file.base()).project(&file.project).cancel(self.cancel);
         let request = if *examine { request.examine() } else { request };
         Ok(self.evaluator.evaluate(catalogue, &file.loaded.graph, &request))
     }

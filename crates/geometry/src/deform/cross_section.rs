@@ -91,7 +91,9 @@ pub fn deform_by_cross_section(
         false => Err(CrossSectionError::Cancelled),
     };
     let mut notes = Vec::new();
+    go_on(0, 1)?;
     let section = find_section(sections, contour, &mut notes)?;
+    go_on(0, 1)?;
     let (first, last) = range(sections, contour, section, options, &mut notes)?;
     go_on(0, 1)?;
     let targets = matched(sections, contour, section, options.matching, &mut notes)?;
@@ -153,14 +155,11 @@ fn find_section(sections: &Sections, contour: &Curve, notes: &mut Vec<String>) -
     let centre = centroid(contour.points());
     let distance = |section: usize| centroid(sections.section(section)).distance(centre);
     let last = sections.len() - 1;
-    let mut nearest = (1, f64::INFINITY);
-    for section in 1..last {
-        let apart = distance(section);
-        if apart < nearest.1 && !sections.is_pole(section) {
-            nearest = (section, apart);
-        }
-    }
-    let (section, apart) = nearest;
+    let mut nearest: Vec<(usize, f64)> = (1..last).map(|section| (section, distance(section))).collect();
+    nearest.sort_by(|a, b| a.1.total_cmp(&b.1));
+    // Poles are looked for in the order of distances: each time all points are measured.
+    let found = nearest.into_iter().find(|(section, apart)| apart.is_finite() && !sections.is_pole(*section));
+    let (section, apart) = found.unwrap_or((1, f64::INFINITY));
     let name = || contour.name().to_owned();
     let Some(ring) = ring_of(sections, section) else {
         return Err(CrossSectionError::SectionIsFlat { section, contour: name() });

@@ -1,5 +1,7 @@
 //! SVG drawings into flat curves.
 
+use std::panic::AssertUnwindSafe;
+
 use glam::DVec2;
 use usvg::roxmltree;
 use usvg::tiny_skia_path::PathSegment;
@@ -8,8 +10,9 @@ use super::ReadError;
 
 const FORMAT: &str = "SVG";
 
-/// Deepest nesting of elements that is read.
-const MAX_DEPTH: usize = 256;
+mod extent;
+
+use extent::check_extent;
 
 /// Most points into which all curves of a file are flattened.
 const MAX_POINTS: usize = 1_000_000;
@@ -39,7 +42,8 @@ pub struct Path2d {
 ///
 /// # Errors
 /// [`ReadError`] where the tolerance is not positive or asks for more than a million points, where the bytes are empty,
-/// no UTF-8, no SVG, or nested deeper than 256 elements, and where there is no visible path.
+/// no UTF-8, no SVG, nested deeper than 256 elements, or showing the same elements too
+/// often, and where there is no visible path.
 pub fn read(bytes: &[u8], tolerance_px: f64) -> Result<Vec<Path2d>, ReadError> {
     let tolerance = |problem| ReadError::Tolerance { tolerance: tolerance_px, problem };
     if !(tolerance_px.is_finite() && tolerance_px > 0.0) {
@@ -102,10 +106,7 @@ fn parse(bytes: &[u8]) -> Result<usvg::Tree, ReadError> {
     let options = roxmltree::ParsingOptions { allow_dtd: true, ..roxmltree::ParsingOptions::default() };
     let document = roxmltree::Document::parse_with_options(text, options)
         .map_err(|error| malformed(format!("line {}", error.pos().row), error.to_string()))?;
-    if let Some(element) = too_deep(&document) {
-        let row = document.text_pos_at(element.range().start).row;
-        return Err(malformed(format!("line {row}"), format!("elements are nested deeper than {MAX_DEPTH}")));
-    }
+    check_extent(&document, bytes.len())?;
     let options = usvg::Options {
         // Markers would come as curves of their own.
         style_sheet: Some(
@@ -118,20 +119,11 @@ fn parse(bytes: &[u8]) -> Result<usvg::Tree, ReadError> {
         },
         ..usvg::Options::default()
     };
-    usvg::Tree::from_xmltree(&document, &options)
-        .map_err(|error| malformed("the drawing".to_owned(), error.to_string()))
-}
-
-/// The first element that lies too deep. The walk has no recursion, unlike what comes behind it.
-fn too_deep<'a, 'i>(document: &'a roxmltree::Document<'i>) -> Option<roxmltree::Node<'a, 'i>> {
-    let mut pending = vec![(document.root(), 0)];
-    while let Some((node, depth)) = pending.pop() {
-        if depth > MAX_DEPTH {
-            return Some(node);
-        }
-        pending.extend(node.children().filter(|child| child.is_element()).map(|child| (child, depth + 1)));
-    }
-    None
+    let refused = |problem: String| malformed("the drawing".to_owned(), problem);
+    // tiny-skia-path 0.12 breaks down over the bounds of curves whose numbers are extreme; nothing of it is kept.
+    std::panic::catch_unwind(AssertUnwindSafe(|| usvg::Tree::from_xmltree(&document, &options)))
+        .map_err(|_| refused("the numbers of a path are too large or too small to be measured".to_owned()))?
+        .map_err(|error| refused(error.to_string()))
 }
 
 /// The subpaths of a path, without names; `None` where no points are left.

@@ -10,6 +10,9 @@ use super::measure::{self, corner_points, polygon_points, project, vector_area};
 use super::topology::Topology;
 use super::triangulate::polygon_triangles;
 
+/// Polygons between two questions whether to go on.
+const STEP: usize = 1 << 16;
+
 /// What [`check`] finds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshCheck {
@@ -122,7 +125,7 @@ pub fn check_while(mesh: &Mesh, progress: &dyn Fn(f64) -> bool) -> Option<MeshCh
 
 fn examine<Stop>(mesh: &Mesh, progress: &dyn Fn(f64) -> Result<(), Stop>) -> Result<MeshCheck, Stop> {
     // About a third of the time goes into the topology.
-    let mut steps = (0..).map(|step| 0.3 + 0.06 * f64::from(step));
+    let mut steps = (0..).map(|step| 0.3 + 0.04 * f64::from(step));
     let mut go_on = || progress(steps.next().unwrap_or(1.0));
     let topology = Topology::new_while(mesh, &|| progress(0.0))?;
     go_on()?;
@@ -131,9 +134,9 @@ fn examine<Stop>(mesh: &Mesh, progress: &dyn Fn(f64) -> Result<(), Stop>) -> Res
     go_on()?;
     let shells = topology.shells();
     go_on()?;
-    let shell_volumes = measure::shell_volumes(mesh, &topology);
+    let shell_volumes = measure::shell_volumes_while(mesh, &topology, &|| progress(0.4))?;
     go_on()?;
-    let area = measure::area(mesh);
+    let area = measure::area_while(mesh, &|| progress(0.42))?;
     let volume: f64 = shell_volumes.iter().sum();
     let negligible = 1e-9 * area * diagonal;
     go_on()?;
@@ -143,23 +146,36 @@ fn examine<Stop>(mesh: &Mesh, progress: &dyn Fn(f64) -> Result<(), Stop>) -> Res
     for vertex in mesh.corners() {
         used[*vertex as usize] = true;
     }
-    let degenerate_polygons = (0..normals.len()).filter(|p| is_degenerate(mesh, *p, diagonal)).collect();
     go_on()?;
-    let folded_polygons = folded_polygons(mesh, &topology, &normals);
+    let mut degenerate_polygons = Vec::new();
+    for polygon in 0..normals.len() {
+        if polygon.is_multiple_of(STEP) {
+            progress(0.55)?;
+        }
+        if is_degenerate(mesh, polygon, diagonal) {
+            degenerate_polygons.push(polygon);
+        }
+    }
+    go_on()?;
+    let folded_polygons = folded_polygons(mesh, &topology, &normals, &mut go_on)?;
     go_on()?;
     let corner_normals_agree = corner_normals_agree(mesh, &normals);
     go_on()?;
     let largest_fold_degrees = largest_fold(&topology, &normals).to_degrees();
     go_on()?;
+    let (closed, boundary_loops) = (topology.is_closed(), topology.boundary_loops().len());
+    go_on()?;
+    let (non_manifold_edges, inconsistent_edges) = (topology.non_manifold_edges(), topology.inconsistent_edges());
+    go_on()?;
     Ok(MeshCheck {
         vertices: mesh.positions().len(),
         polygons: mesh.polygon_count(),
-        closed: topology.is_closed(),
+        closed,
         shells: shells.len(),
         euler_characteristic: topology.euler_characteristic(),
-        boundary_loops: topology.boundary_loops().len(),
-        non_manifold_edges: topology.non_manifold_edges(),
-        inconsistent_edges: topology.inconsistent_edges(),
+        boundary_loops,
+        non_manifold_edges,
+        inconsistent_edges,
         degenerate_polygons,
         folded_polygons,
         normals_outward: body.then_some(volume > 0.0),
@@ -192,7 +208,12 @@ fn is_degenerate(mesh: &Mesh, polygon: usize, diagonal: f64) -> bool {
     }
 }
 
-fn folded_polygons(mesh: &Mesh, topology: &Topology, normals: &[DVec3]) -> Vec<usize> {
+fn folded_polygons<Stop>(
+    mesh: &Mesh,
+    topology: &Topology,
+    normals: &[DVec3],
+    go_on: &mut dyn FnMut() -> Result<(), Stop>,
+) -> Result<Vec<usize>, Stop> {
     /// Neighbours that face the other way: their number and sum; and the sum of all.
     #[derive(Clone, Copy, Default)]
     struct Around {
@@ -215,6 +236,7 @@ fn folded_polygons(mesh: &Mesh, topology: &Topology, normals: &[DVec3]) -> Vec<u
             }
         }
     }
+    go_on()?;
     let turned_over = |polygon: usize| {
         let corners = mesh.polygon(polygon).len();
         let Around { opposing, opposing_sum, sum } = around[polygon];
@@ -224,7 +246,7 @@ fn folded_polygons(mesh: &Mesh, topology: &Topology, normals: &[DVec3]) -> Vec<u
             && opposing_sum.length() > 0.8 * opposing as f64
             && sum.dot(normals[polygon]) < 0.0
     };
-    (0..normals.len()).filter(|p| turned_over(*p) || crosses_itself(mesh, *p, normals[*p])).collect()
+    Ok((0..normals.len()).filter(|p| turned_over(*p) || crosses_itself(mesh, *p, normals[*p])).collect())
 }
 
 fn crosses_itself(mesh: &Mesh, polygon: usize, normal: DVec3) -> bool {

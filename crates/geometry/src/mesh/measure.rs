@@ -1,5 +1,7 @@
 //! Sizes: bounds, area, enclosed volume, and the normal and area of a single polygon.
 
+use std::convert::Infallible;
+
 use glam::{DVec2, DVec3};
 
 use super::Mesh;
@@ -52,7 +54,24 @@ pub fn polygon_area(mesh: &Mesh, polygon: usize) -> f64 {
 
 /// Area of the mesh in square metres, as the sum over its [`triangles`].
 pub fn area(mesh: &Mesh) -> f64 {
-    triangles(mesh).map(|corners| triangle_area(corner_points(mesh, corners))).sum()
+    match area_while::<Infallible>(mesh, &|| Ok(())) {
+        Ok(area) => area,
+    }
+}
+
+/// Triangles between two questions whether to go on.
+const STEP: usize = 1 << 16;
+
+/// The same, or the error with which `go_on`, asked every 65,536 triangles, says stop.
+pub(crate) fn area_while<Stop>(mesh: &Mesh, go_on: &dyn Fn() -> Result<(), Stop>) -> Result<f64, Stop> {
+    let mut area = 0.0;
+    for (done, corners) in triangles(mesh).enumerate() {
+        if done.is_multiple_of(STEP) {
+            go_on()?;
+        }
+        area += triangle_area(corner_points(mesh, corners));
+    }
+    Ok(area)
 }
 
 /// Volume enclosed by the mesh in cubic metres, positive where the polygons face outwards.
@@ -75,7 +94,18 @@ pub fn signed_volume_with(mesh: &Mesh, topology: &Topology) -> f64 {
 /// Signed volume in cubic metres of each shell, in the order of [`Topology::shells`], each closed as in
 /// [`signed_volume`].
 pub fn shell_volumes(mesh: &Mesh, topology: &Topology) -> Vec<f64> {
-    let Some((low, high)) = bounds(mesh) else { return Vec::new() };
+    match shell_volumes_while::<Infallible>(mesh, topology, &|| Ok(())) {
+        Ok(volumes) => volumes,
+    }
+}
+
+/// The same, or the error with which `go_on`, asked every 65,536 triangles, says stop.
+pub(crate) fn shell_volumes_while<Stop>(
+    mesh: &Mesh,
+    topology: &Topology,
+    go_on: &dyn Fn() -> Result<(), Stop>,
+) -> Result<Vec<f64>, Stop> {
+    let Some((low, high)) = bounds(mesh) else { return Ok(Vec::new()) };
     let origin = 0.5 * (low + high);
     let shells = topology.shells();
     let mut shell_of = vec![0; mesh.polygon_count()];
@@ -86,7 +116,10 @@ pub fn shell_volumes(mesh: &Mesh, topology: &Topology) -> Vec<f64> {
     }
     let mut volumes = vec![0.0; shells.len()];
     let mut polygon = 0;
-    for corners in triangles(mesh) {
+    for (done, corners) in triangles(mesh).enumerate() {
+        if done.is_multiple_of(STEP) {
+            go_on()?;
+        }
         while mesh.corner_range(polygon).end <= corners[0] {
             polygon += 1;
         }
@@ -98,7 +131,7 @@ pub fn shell_volumes(mesh: &Mesh, topology: &Topology) -> Vec<f64> {
             volumes[shell_of[polygon]] += fan_volume(mesh, &lid, origin);
         }
     }
-    volumes
+    Ok(volumes)
 }
 
 /// Area in square metres of the fans that close the boundary loops in [`signed_volume`].

@@ -90,7 +90,7 @@ pub fn transform_while(
     ask(progress, 0.4)?;
     let moved = rebuild(mesh, positions, normals, mesh.uvs().map(<[DVec2]>::to_vec))?;
     ask(progress, 0.7)?;
-    Ok(if determinant < 0.0 { turned(&moved)? } else { moved })
+    if determinant < 0.0 { turned(&moved, &|done| ask(progress, 0.7 + 0.3 * done)) } else { Ok(moved) }
 }
 
 /// The mesh inside out: the corners of each polygon the other way round, normals reversed.
@@ -98,7 +98,7 @@ pub fn transform_while(
 /// # Errors
 /// None for a mesh that exists; the constructor checks all the same.
 pub fn flipped(mesh: &Mesh) -> Result<Mesh, MeshError> {
-    let turned = turned(mesh)?;
+    let turned = turned::<MeshError>(mesh, &|_| Ok(()))?;
     let normals = turned.normals().map(|normals| normals.iter().map(|n| -*n).collect());
     let uvs = turned.uvs().map(<[DVec2]>::to_vec);
     rebuild(&turned, turned.positions().to_vec(), normals, uvs)
@@ -149,8 +149,19 @@ fn joined<'a, E: From<MeshError>>(
     if meshes.iter().any(|m| m.normals().is_some()) {
         let mut normals = Vec::with_capacity(joined.corners().len());
         for mesh in &meshes {
-            ask(0.4 + 0.3 * normals.len() as f64 / joined.corners().len().max(1) as f64)?;
-            normals.extend(normals_or_flat(mesh));
+            let share = |done: usize| 0.4 + 0.3 * done as f64 / joined.corners().len().max(1) as f64;
+            match mesh.normals() {
+                Some(own) => {
+                    for part in own.chunks(STEP) {
+                        ask(share(normals.len()))?;
+                        normals.extend_from_slice(part);
+                    }
+                }
+                None => {
+                    ask(share(normals.len()))?;
+                    normals.extend(normals_or_flat(mesh));
+                }
+            }
         }
         ask(0.7)?;
         joined = joined.with_normals(normals)?;
@@ -160,7 +171,12 @@ fn joined<'a, E: From<MeshError>>(
         for mesh in &meshes {
             ask(0.8 + 0.1 * uvs.len() as f64 / joined.corners().len().max(1) as f64)?;
             match mesh.uvs() {
-                Some(own) => uvs.extend_from_slice(own),
+                Some(own) => {
+                    for part in own.chunks(STEP) {
+                        ask(0.8 + 0.1 * uvs.len() as f64 / joined.corners().len().max(1) as f64)?;
+                        uvs.extend_from_slice(part);
+                    }
+                }
                 None => uvs.extend(std::iter::repeat_n(DVec2::ZERO, mesh.corners().len())),
             }
         }
@@ -184,7 +200,7 @@ fn normals_or_flat(mesh: &Mesh) -> Vec<DVec3> {
 }
 
 /// The corners of each polygon the other way round, their attributes with them.
-fn turned(mesh: &Mesh) -> Result<Mesh, MeshError> {
+fn turned<E: From<MeshError>>(mesh: &Mesh, ask: &dyn Fn(f64) -> Result<(), E>) -> Result<Mesh, E> {
     fn reverse<T>(mesh: &Mesh, mut values: Vec<T>) -> Vec<T> {
         for polygon in 0..mesh.polygon_count() {
             values[mesh.corner_range(polygon)][1..].reverse();
@@ -192,14 +208,22 @@ fn turned(mesh: &Mesh) -> Result<Mesh, MeshError> {
         values
     }
     let corners = reverse(mesh, mesh.corners().to_vec());
+    ask(0.1)?;
     let counts = mesh.polygons().map(<[u32]>::len);
     let mut turned = Mesh::from_corners(mesh.positions().to_vec(), corners, counts)?.named(mesh.name());
+    ask(0.2)?;
     if let Some(normals) = mesh.normals() {
-        turned = turned.with_normals(reverse(mesh, normals.to_vec()))?;
+        let reversed = reverse(mesh, normals.to_vec());
+        ask(0.5)?;
+        turned = turned.with_normals(reversed)?;
     }
+    ask(0.6)?;
     if let Some(uvs) = mesh.uvs() {
-        turned = turned.with_uvs(reverse(mesh, uvs.to_vec()))?;
+        let reversed = reverse(mesh, uvs.to_vec());
+        ask(0.9)?;
+        turned = turned.with_uvs(reversed)?;
     }
+    ask(1.0)?;
     Ok(turned)
 }
 

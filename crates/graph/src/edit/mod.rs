@@ -60,9 +60,11 @@
 //! [`Graph::connect`]: crate::Graph::connect
 
 mod apply;
+mod body;
 pub mod compound;
 mod fresh_name;
 mod history;
+mod interface;
 mod record;
 mod slot;
 
@@ -70,9 +72,13 @@ pub use history::History;
 pub use record::NodeRecord;
 
 use std::fmt;
+use std::sync::Arc;
 
+use crate::body::{Body, BodyError};
 use crate::graph::{ConnectError, GraphError, NodeId, Source};
+use crate::interface::{GraphOutput, InterfaceError};
 use crate::literal::Literal;
+use crate::parameter::Parameter;
 
 /// One change of a graph, as a value.
 #[derive(Clone, Debug, PartialEq)]
@@ -147,6 +153,78 @@ pub enum Edit {
     },
     /// Remarks on the whole graph.
     GraphNotes(String),
+    /// Lets a node pass its inputs on in place of doing its work, or do its work again.
+    Mute {
+        /// The node.
+        node: NodeId,
+        /// Whether it is muted.
+        muted: bool,
+    },
+    /// Lets a parameter of the graph drive an input, in place of whatever was there.
+    UseParameter {
+        /// The node.
+        node: NodeId,
+        /// Its input.
+        input: String,
+        /// The parameter.
+        parameter: String,
+    },
+    /// Declares a parameter.
+    AddParameter {
+        /// How many stand before it; beyond the end means the end.
+        index: usize,
+        /// The parameter.
+        parameter: Box<Parameter>,
+    },
+    /// Removes a parameter. Inputs that it drives get its value, where that fits.
+    RemoveParameter(String),
+    /// Declares a parameter otherwise, perhaps under another name; inputs that it drives follow, as far as they fit.
+    ChangeParameter {
+        /// The name that it has.
+        name: String,
+        /// What it becomes.
+        parameter: Box<Parameter>,
+    },
+    /// Puts a value at a parameter, or takes its value away.
+    SetParameter {
+        /// The parameter.
+        parameter: String,
+        /// The value.
+        literal: Option<Literal>,
+    },
+    /// Declares an output of the graph.
+    AddOutput {
+        /// How many stand before it; beyond the end means the end.
+        index: usize,
+        /// The output.
+        output: Box<GraphOutput>,
+    },
+    /// Removes an output of the graph.
+    RemoveOutput(String),
+    /// Declares an output of the graph otherwise, perhaps under another name or from another node.
+    ChangeOutput {
+        /// The name that it has.
+        name: String,
+        /// What it becomes.
+        output: Box<GraphOutput>,
+    },
+    /// Puts another graph into a node. Links and values that no longer fit its ports go.
+    SetBody {
+        /// The node, of kind `graph` or `repeat`.
+        node: NodeId,
+        /// What it evaluates.
+        body: Arc<Body>,
+    },
+    /// Changes the graph that is embedded in a node. What is linked to its ports follows new names; links and values that
+    /// no longer fit go.
+    Within {
+        /// The node.
+        node: NodeId,
+        /// What changes within.
+        edit: Box<Edit>,
+    },
+    /// Several edits in their order, all or none.
+    Several(Vec<Edit>),
 }
 
 /// Text of a file that was not understood. It can't be made, only moved, so that every file that is written can be
@@ -183,6 +261,7 @@ impl Edit {
             None => Self::Reset { node, input },
             Some(Source::Literal { literal, .. }) => Self::Set { node, input, literal },
             Some(Source::Link(link)) => Self::Connect { from: link.node, output: link.output, to: node, input },
+            Some(Source::Parameter(parameter)) => Self::UseParameter { node, input, parameter },
             Some(Source::Unread(text)) => Self::PutBack { node, input, text: UnreadText(text) },
         }
     }
@@ -201,6 +280,19 @@ impl Edit {
             Self::Move { .. } => "move a node".to_owned(),
             Self::Note { .. } => "edit a note".to_owned(),
             Self::GraphNotes(_) => "edit the notes".to_owned(),
+            Self::Mute { muted: true, .. } => "mute a node".to_owned(),
+            Self::Mute { .. } => "unmute a node".to_owned(),
+            Self::UseParameter { input, parameter, .. } => format!("drive {input} by {parameter}"),
+            Self::AddParameter { parameter, .. } => format!("add parameter {}", parameter.name()),
+            Self::RemoveParameter(name) => format!("remove parameter {name}"),
+            Self::ChangeParameter { name, .. } => format!("change parameter {name}"),
+            Self::SetParameter { parameter, .. } => format!("set {parameter}"),
+            Self::AddOutput { output, .. } => format!("add output {}", output.name()),
+            Self::RemoveOutput(name) => format!("remove output {name}"),
+            Self::ChangeOutput { name, .. } => format!("change output {name}"),
+            Self::SetBody { .. } => "change a body".to_owned(),
+            Self::Within { edit, .. } => edit.label(),
+            Self::Several(edits) => edits.first().map(Self::label).unwrap_or_default(),
         }
     }
 }
@@ -214,6 +306,20 @@ pub enum EditError {
     /// A link does not fit.
     #[error(transparent)]
     Connect(#[from] ConnectError),
+    /// A parameter or an output of the graph does not fit.
+    #[error(transparent)]
+    Interface(#[from] InterfaceError),
+    /// A body does not fit.
+    #[error(transparent)]
+    Body(#[from] BodyError),
+    /// An edit within a body is refused.
+    #[error("within \"{node}\": {error}")]
+    Within {
+        /// The node whose body it is.
+        node: String,
+        /// Why.
+        error: Box<EditError>,
+    },
     /// Nothing is linked.
     #[error("node \"{node}\", input \"{input}\": no link is there to remove")]
     NotLinked {

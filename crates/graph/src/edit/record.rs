@@ -1,8 +1,10 @@
 //! A node outside a graph: everything needed to add it, or to bring it back as it was.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-use crate::graph::{Graph, Link, Node, NodeId, Outgoing, Source};
+use crate::body::Body;
+use crate::graph::{Graph, Link, Node, NodeId, Outgoing, Source, Taken};
 use crate::literal::Literal;
 
 /// A node as [`crate::Edit::AddNode`] adds it.
@@ -23,7 +25,13 @@ pub struct NodeRecord {
     pub(super) inputs: BTreeMap<String, Source>,
     pub(super) position: Option<[f64; 2]>,
     pub(super) note: String,
+    pub(super) muted: bool,
+    /// The graph within; `None` for an empty one where the kind has a body.
+    pub(super) body: Option<Arc<Body>>,
     pub(super) unknown_fields: Vec<(String, String)>,
+    /// Outputs of the graph that come from it: their names, and the output of the node. They come from nothing when it
+    /// is added.
+    pub(super) promoted: Vec<(String, String)>,
     /// Links from it; the inputs at which they end hold nothing when it is added.
     pub(super) outgoing: Vec<Outgoing>,
 }
@@ -39,7 +47,10 @@ impl NodeRecord {
             inputs: BTreeMap::new(),
             position: None,
             note: String::new(),
+            muted: false,
+            body: None,
             unknown_fields: Vec::new(),
+            promoted: Vec::new(),
             outgoing: Vec::new(),
         }
     }
@@ -55,6 +66,27 @@ impl NodeRecord {
     #[must_use]
     pub fn link(mut self, input: impl Into<String>, from: NodeId, output: impl Into<String>) -> Self {
         self.inputs.insert(input.into(), Source::Link(Link { node: from, output: output.into() }));
+        self
+    }
+
+    /// With an input that holds a parameter of the graph.
+    #[must_use]
+    pub fn parameter(mut self, input: impl Into<String>, parameter: impl Into<String>) -> Self {
+        self.inputs.insert(input.into(), Source::Parameter(parameter.into()));
+        self
+    }
+
+    /// With a graph within; for the kinds `graph` and `repeat`.
+    #[must_use]
+    pub fn body(mut self, body: Body) -> Self {
+        self.body = Some(Arc::new(body));
+        self
+    }
+
+    /// Passing its inputs on in place of doing its work.
+    #[must_use]
+    pub fn muted(mut self) -> Self {
+        self.muted = true;
         self
     }
 
@@ -88,7 +120,8 @@ impl NodeRecord {
     }
 
     /// A node that was taken out of a graph.
-    pub(super) fn of_taken(id: NodeId, node: Node, outgoing: Vec<Outgoing>) -> Self {
+    pub(super) fn of_taken(id: NodeId, taken: Taken) -> Self {
+        let Taken { node, outgoing, promoted } = taken;
         Self {
             id: Some(id),
             name: node.name,
@@ -97,7 +130,10 @@ impl NodeRecord {
             inputs: node.inputs,
             position: node.position,
             note: node.note,
+            muted: node.muted,
+            body: node.body,
             unknown_fields: node.unknown_fields,
+            promoted,
             outgoing,
         }
     }
@@ -112,7 +148,10 @@ impl NodeRecord {
             inputs: node.inputs.clone(),
             position: node.position,
             note: node.note.clone(),
+            muted: node.muted,
+            body: node.body.clone(),
             unknown_fields: node.unknown_fields.clone(),
+            promoted: Vec::new(),
             outgoing: Vec::new(),
         }
     }
@@ -120,6 +159,12 @@ impl NodeRecord {
     /// Moves it by an offset, where it is placed.
     pub(super) fn shift(&mut self, offset: [f64; 2]) {
         self.position = self.position.map(|p| [p[0] + offset[0], p[1] + offset[1]]);
+    }
+
+    /// The outputs of the graph that come from a node: their names, and the output of the node.
+    pub(super) fn promoted_of(graph: &Graph, id: NodeId) -> Vec<(String, String)> {
+        let links = graph.outputs().filter_map(|output| Some((output.name(), output.link()?)));
+        links.filter(|(_, link)| link.node == id).map(|(name, link)| (name.to_owned(), link.output.clone())).collect()
     }
 
     /// All links that leave a node.

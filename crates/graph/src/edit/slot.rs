@@ -12,6 +12,9 @@ enum Slot {
     Position(NodeId),
     Note(NodeId),
     GraphNotes,
+    Muted(NodeId),
+    Parameter(String),
+    Within(NodeId, Box<Slot>),
 }
 
 /// The place that an edit writes. None for links and names, which depend on others, and for whole nodes.
@@ -21,6 +24,9 @@ fn slot(edit: &Edit) -> Option<Slot> {
         Edit::Move { node, .. } => Some(Slot::Position(*node)),
         Edit::Note { node, .. } => Some(Slot::Note(*node)),
         Edit::GraphNotes(_) => Some(Slot::GraphNotes),
+        Edit::Mute { node, .. } => Some(Slot::Muted(*node)),
+        Edit::SetParameter { parameter, .. } => Some(Slot::Parameter(parameter.clone())),
+        Edit::Within { node, edit } => Some(Slot::Within(*node, Box::new(slot(edit)?))),
         _ => None,
     }
 }

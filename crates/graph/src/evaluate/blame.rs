@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use crate::graph::{Graph, Node, NodeId};
+use crate::graph::NodeId;
 use crate::value::KeyHasherBuilder;
 
 /// The failed nodes behind missing inputs, each once, in the order of the inputs.
@@ -21,8 +21,4 @@ impl Blame {
     pub(crate) fn into_nodes(self) -> Option<Vec<NodeId>> {
         (!self.nodes.is_empty()).then_some(self.nodes)
     }
-}
-
-pub(crate) fn names(graph: &Graph, nodes: &[NodeId]) -> Vec<String> {
-    nodes.iter().filter_map(|id| graph.node(*id)).map(Node::name).map(str::to_owned).collect()
 }

@@ -38,7 +38,7 @@ pub(crate) fn examine(
     examination.finish()
 }
 
-fn caught(kind: &NodeKind, run: impl FnOnce() -> Result<(), NodeError>) -> Result<(), NodeError> {
+pub(crate) fn caught<T>(kind: &NodeKind, run: impl FnOnce() -> Result<T, NodeError>) -> Result<T, NodeError> {
     catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<&str>().map(|s| (*s).to_owned());
         let text = text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();

@@ -2,20 +2,22 @@
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use crate::catalogue::Catalogue;
-use crate::evaluate::blame::names;
 use crate::evaluate::evaluation::{Evaluation, Outcome, OutcomeState};
 use crate::evaluate::examine::Examiner;
 use crate::evaluate::file_cache::FileCache;
 use crate::evaluate::flight::Flights;
-use crate::evaluate::inputs::Key;
+use crate::evaluate::inputs::{Disk, Key};
 use crate::evaluate::memo::{Entry, Memo};
+use crate::evaluate::place::Place;
 use crate::evaluate::plan::{Found, Plan, Planner};
-use crate::evaluate::run::{Ended, Runner};
-use crate::evaluate::{CancelToken, Event, EventKind, Events};
-use crate::graph::{Graph, Node, NodeId};
+use crate::evaluate::run::{Ended, Run, Runner};
+use crate::evaluate::{CancelToken, EventKind, Events};
+use crate::file::Project;
+use crate::graph::{Graph, NodeId};
 use crate::value::KeyHasherBuilder;
 
 /// How to evaluate.
@@ -43,6 +45,7 @@ pub struct Request<'a> {
     events: &'a dyn Events,
     cancel: CancelToken,
     base: PathBuf,
+    project: Option<Project>,
     examine: bool,
 }
 
@@ -54,6 +57,7 @@ impl<'a> Request<'a> {
             events: &(),
             cancel: CancelToken::new(),
             base: PathBuf::new(),
+            project: None,
             examine: false,
         }
     }
@@ -80,6 +84,13 @@ impl<'a> Request<'a> {
     #[must_use]
     pub fn base(self, base: impl AsRef<Path>) -> Self {
         Self { base: base.as_ref().to_owned(), ..self }
+    }
+
+    /// The nodes may read the files of this project. Without one they may read what lies below [`Request::base`], which
+    /// is the current folder where none is given.
+    #[must_use]
+    pub fn project(self, project: &Project) -> Self {
+        Self { project: Some(project.clone()), ..self }
     }
 }
 
@@ -149,15 +160,19 @@ impl Evaluator {
     pub fn evaluate(&mut self, catalogue: &Catalogue, graph: &Graph, request: &Request<'_>) -> Evaluation {
         let begun = Instant::now();
         self.evaluations += 1;
-        self.files.begin();
+        self.files.begin(request.project.clone().unwrap_or_else(|| Project::within(&request.base)));
         self.sync(graph, request);
-        let planner = Planner { catalogue, graph, memo: &self.memo, base: &request.base, files: &self.files };
+        let place = Place::of_root(graph);
+        let disk = Disk { base: &request.base, folder: "", cache: &self.files };
+        let planner = Planner { catalogue, place: &place, memo: &self.memo, disk };
         let plan = planner.plan(&request.targets, |id| self.slots.get(id.index()).and_then(|slot| slot.key.clone()));
-        announce(graph, request, &plan);
+        announce(request.events, &place, &plan);
+        if let Some(first) = request.targets.first() {
+            place.emit(request.events, *first, EventKind::Planned(plan.steps.len()));
+        }
         self.start_pool(&plan);
         let runner = Runner {
-            graph,
-            plan: &plan,
+            catalogue,
             memo: &self.memo,
             base: &request.base,
             cancel: &request.cancel,
@@ -165,10 +180,14 @@ impl Evaluator {
             files: &self.files,
             flights: Flights::default(),
             silence: Default::default(),
+            planned: Mutex::new(plan.steps.len()),
+            width: self.pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads),
         };
-        let ended = runner.run(self.pool.as_ref());
+        let run = Run::new(place, plan, None);
+        runner.run(&run, self.pool.as_ref());
+        drop(runner);
         self.files.drop_bytes();
-        let mut evaluation = self.conclude(graph, request, plan, ended);
+        let mut evaluation = self.conclude(request, &run);
         if request.examine {
             let key_of = |id: NodeId| self.slots.get(id.index()).and_then(|slot| slot.key.clone());
             let examiner = Examiner { memo: &self.memo, cancel: &request.cancel, events: request.events };
@@ -225,35 +244,39 @@ impl Evaluator {
     }
 
     fn start_pool(&mut self, plan: &Plan) {
-        if self.threads != 1 && self.pool.is_none() && plan.steps.len() > 1 {
+        let has_work = plan.steps.len() > 1 || plan.steps.iter().any(|step| step.body.is_some());
+        if self.threads != 1 && self.pool.is_none() && has_work {
             // Without threads to be had, the calling thread does the work alone; results are the same.
             self.pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.min(MOST_THREADS)).build().ok();
         }
     }
 
-    fn conclude(&mut self, graph: &Graph, request: &Request<'_>, mut plan: Plan, mut ended: Vec<Ended>) -> Evaluation {
+    fn conclude(&mut self, request: &Request<'_>, run: &Run<'_>) -> Evaluation {
+        let (graph, plan) = (run.place.graph(), &run.plan);
         let mut evaluation = Evaluation::default();
         let targets: HashSet<NodeId, KeyHasherBuilder> = request.targets.iter().copied().collect();
         let mut outcomes = Vec::with_capacity(plan.order.len());
         let mut kinds = Vec::new();
         let mut changed = Vec::new();
-        for id in plan.order {
-            let (Some(node), Some(found)) = (graph.node(id), plan.found.remove(&id)) else { continue };
+        for &id in &plan.order {
+            let (Some(node), Some(found)) = (graph.node(id), plan.found.get(&id).cloned()) else { continue };
             let wanted = targets.contains(&id);
             let (key, state, ran, duration) = match found {
                 Found::Known(key, entry) => (Some(key), state_of(&entry, wanted), false, entry.duration),
                 Found::Failed(failure) => (None, OutcomeState::Failed(failure), false, Duration::ZERO),
-                Found::Waiting(on) => (None, OutcomeState::Waiting(names(graph, &on)), false, Duration::ZERO),
+                Found::Waiting(on) => (None, OutcomeState::Waiting(run.place.names(&on)), false, Duration::ZERO),
                 Found::Scheduled(step) => {
                     self.slots[id.index()].computed_in = self.evaluations;
-                    match std::mem::replace(&mut ended[step], Ended::Cancelled) {
+                    match run.ended(step) {
                         Ended::Done { key, values, report, duration, ran } => {
                             (Some(key), OutcomeState::Done { values, report }, ran, duration)
                         }
                         Ended::Failed { key, failure, duration, ran } => {
                             (key, OutcomeState::Failed(failure), ran, duration)
                         }
-                        Ended::Waiting(on) => (None, OutcomeState::Waiting(names(graph, &on)), false, Duration::ZERO),
+                        Ended::Waiting(on) => {
+                            (None, OutcomeState::Waiting(run.place.names(&on)), false, Duration::ZERO)
+                        }
                         Ended::Cancelled => {
                             evaluation.cancelled = true;
                             (None, OutcomeState::Cancelled, false, Duration::ZERO)
@@ -265,7 +288,7 @@ impl Evaluator {
             if before.is_some_and(|old| self.slots[id.index()].key.as_ref().is_none_or(|new| new.hash != old.hash)) {
                 changed.push(id);
             }
-            if wanted && let Some(kind) = &node.kind {
+            if wanted && let Some(kind) = node.acting_kind() {
                 kinds.push((id, kind.clone()));
             }
             outcomes
@@ -282,25 +305,22 @@ impl Evaluator {
     }
 }
 
-/// Says what is settled without running, and how many nodes are scheduled.
-fn announce(graph: &Graph, request: &Request<'_>, plan: &Plan) {
-    let emit = |id: NodeId, kind: EventKind<'_>| {
-        let name = graph.node(id).map_or("", Node::name);
-        request.events.event(&Event { node: id, name, kind });
-    };
+/// Says what is settled without running.
+pub(crate) fn announce(events: &dyn Events, place: &Place<'_>, plan: &Plan) {
     for id in &plan.order {
-        match plan.found.get(id) {
+        let kind = match plan.found.get(id) {
             Some(Found::Known(_, entry)) => match &entry.result {
-                Ok(_) => emit(*id, EventKind::Hit),
-                Err(failure) => emit(*id, EventKind::Failed(failure)),
+                Ok(_) => EventKind::Hit,
+                Err(failure) => EventKind::Failed(failure),
             },
-            Some(Found::Failed(failure)) => emit(*id, EventKind::Failed(failure)),
-            Some(Found::Waiting(on)) => emit(*id, EventKind::Waiting(&names(graph, on))),
-            Some(Found::Scheduled(_)) | None => {}
-        }
-    }
-    if let Some(first) = request.targets.first() {
-        emit(*first, EventKind::Planned(plan.steps.len()));
+            Some(Found::Failed(failure)) => EventKind::Failed(failure),
+            Some(Found::Waiting(on)) => {
+                place.emit(events, *id, EventKind::Waiting(&place.names(on)));
+                continue;
+            }
+            Some(Found::Scheduled(_)) | None => continue,
+        };
+        place.emit(events, *id, kind);
     }
 }
 

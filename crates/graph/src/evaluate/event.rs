@@ -10,9 +10,9 @@ use crate::graph::NodeId;
 /// Something happened to a node.
 #[derive(Clone, Debug)]
 pub struct Event<'a> {
-    /// The node.
+    /// The node of the evaluated graph: for a node within a body, the one whose body that is.
     pub node: NodeId,
-    /// Its name.
+    /// Its name; for a node within a body its path, such as `hand/rails`, and within a repeated one `hands/2/rails`.
     pub name: &'a str,
     /// What happened.
     pub kind: EventKind<'a>,
@@ -21,15 +21,18 @@ pub struct Event<'a> {
 /// What happened.
 ///
 /// First come the nodes that are settled without running: [`Hit`](Self::Hit), [`Failed`](Self::Failed) or
-/// [`Waiting`](Self::Waiting), one for each. Then comes [`Planned`](Self::Planned), once, and after it the scheduled
+/// [`Waiting`](Self::Waiting), one for each. Then comes [`Planned`](Self::Planned), and after it the scheduled
 /// nodes. Each of these ends with exactly one of `Hit`, `Finished`, `Failed`, `Waiting` and `Cancelled`: a progress bar
 /// that takes its length from `Planned` and counts these five, from there on, fills exactly. `Started`, `Progress` and
 /// `Examined` don't count; a node that starts is ended by `Finished`, `Failed` or `Cancelled`.
+///
+/// When a node with a body starts, the nodes within are planned. `Planned` then comes again with the larger number, and
+/// after it one of the five for each node within, be it settled without running or not; the node itself ends last.
 #[derive(Clone, Debug)]
 pub enum EventKind<'a> {
-    /// So many nodes are scheduled; some of them need not run, where an equal result turns up meanwhile. Comes once,
-    /// with the first target, after the events of all nodes that are settled without running; not at all where no
-    /// target is given.
+    /// So many nodes are scheduled; some of them need not run, where an equal result turns up meanwhile. Comes with the
+    /// first target, after the events of all nodes that are settled without running; not at all where no target is
+    /// given. Comes again where a body is planned, with all that were planned so far.
     Planned(usize),
     /// It began to run.
     Started,

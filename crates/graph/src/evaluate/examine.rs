@@ -76,7 +76,7 @@ impl Examiner<'_> {
             Err(NodeError::Failed { message, .. }) => (Err(failure(kind, None, message)), Report::default()),
         };
         self.events.event(&Event { node, name, kind: EventKind::Examined(duration) });
-        let entry = Arc::new(Entry { result, report: Arc::new(report), duration });
+        let entry = Arc::new(Entry { result, report: Arc::new(report), duration, files: None });
         self.memo.insert(key, entry.clone());
         Some(entry)
     }

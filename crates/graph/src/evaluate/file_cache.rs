@@ -1,6 +1,6 @@
 //! The files that nodes read: each at most once in an evaluation, and not at all while it is unchanged.
 //!
-//! The only file of the engine that touches files. In one evaluation a file has one content: what it was when it was
+//! Nothing is read that lies outside of the project. In one evaluation a file has one content: what it was when it was
 //! first looked at. The hash is always that of the very bytes that a node gets, so that a change while a file is read
 //! can't make the memo remember a result under the content of another. Between evaluations only the hash is kept, with
 //! what tells a changed file from an unchanged one without reading it: size, time of modification, and on Unix device,
@@ -14,6 +14,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, SystemTime};
 
+use crate::file::Project;
 use crate::one_line::one_line;
 use crate::value::{ContentHash, ContentHasher};
 
@@ -90,6 +91,8 @@ struct Entry {
 pub(crate) struct FileCache {
     entries: Mutex<BTreeMap<PathBuf, Arc<Mutex<Entry>>>>,
     evaluation: u64,
+    /// What may be read.
+    project: Project,
     reads: AtomicUsize,
 }
 
@@ -100,8 +103,9 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 impl FileCache {
     /// From here on every file is looked at again.
-    pub(crate) fn begin(&mut self) {
+    pub(crate) fn begin(&mut self, project: Project) {
         self.drop_bytes();
+        self.project = project;
         self.evaluation += 1;
     }
 
@@ -174,6 +178,10 @@ impl FileCache {
             return;
         }
         entry.looked_at = self.evaluation;
+        if let Err(outside) = self.project.check(path) {
+            entry.content = Some(Err(outside.to_string()));
+            return;
+        }
         let unchanged = match (&entry.content, fs::metadata(path)) {
             (Some(Ok(content)), Ok(metadata)) => content.stamp.as_ref() == Some(&Stamp::of(&metadata)),
             _ => false,
@@ -234,7 +242,7 @@ mod tests {
         settle();
         let mut cache = FileCache::default();
         for _ in 0..3 {
-            cache.begin();
+            cache.begin(Project::anywhere());
             assert_eq!(cache.hash(&path), Ok(ContentHasher::of_bytes(b"ab")));
         }
         assert_eq!(cache.reads(), 1);
@@ -243,7 +251,7 @@ mod tests {
         assert_eq!(cache.reads(), 2);
         std::fs::write(&path, "cd").unwrap();
         assert_eq!(cache.hash(&path), Ok(ContentHasher::of_bytes(b"ab")), "one content in one evaluation");
-        cache.begin();
+        cache.begin(Project::anywhere());
         assert_eq!(cache.hash(&path), Ok(ContentHasher::of_bytes(b"cd")));
         assert_eq!(cache.bytes(&path).as_deref(), Ok(b"cd".as_slice()));
         assert_eq!(cache.reads(), 3, "hash and bytes come from one read");
@@ -257,7 +265,7 @@ mod tests {
         let mut cache = FileCache::default();
         for turn in 0..200_u8 {
             std::fs::write(&path, [turn]).unwrap();
-            cache.begin();
+            cache.begin(Project::anywhere());
             assert_eq!(cache.hash(&path), Ok(ContentHasher::of_bytes(&[turn])), "turn {turn}");
         }
         let old = SystemTime::UNIX_EPOCH + Duration::new(1_000_000, 5);
@@ -266,7 +274,7 @@ mod tests {
             File::options().write(true).open(&path).unwrap().set_modified(old).unwrap();
             if cfg!(unix) {
                 settle();
-                cache.begin();
+                cache.begin(Project::anywhere());
                 assert_eq!(cache.hash(&path), Ok(ContentHasher::of_bytes(content.as_bytes())));
             }
         }
@@ -280,9 +288,9 @@ mod tests {
         std::fs::write(&path, "old").unwrap();
         settle();
         let mut cache = FileCache::default();
-        cache.begin();
+        cache.begin(Project::anywhere());
         cache.hash(&path).unwrap();
-        cache.begin();
+        cache.begin(Project::anywhere());
         assert_eq!(cache.hash(&path), Ok(ContentHasher::of_bytes(b"old")), "remembered");
         std::fs::write(&path, "new").unwrap();
         assert_eq!(cache.bytes(&path).as_deref(), Ok(b"new".as_slice()));
@@ -293,7 +301,7 @@ mod tests {
     fn what_is_no_file_says_so_in_one_line() {
         let folder = tempfile::tempdir().unwrap();
         let mut cache = FileCache::default();
-        cache.begin();
+        cache.begin(Project::anywhere());
         assert!(cache.hash(folder.path()).unwrap_err().ends_with("can't be read: it is not a file"));
         let missing = cache.hash(&folder.path().join("a\nb")).unwrap_err();
         assert!(missing.contains("a\\nb does not exist: put it there") && !missing.contains('\n'), "{missing}");

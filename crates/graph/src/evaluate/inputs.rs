@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::catalogue::ConvertFn;
 use crate::evaluate::Failure;
 use crate::evaluate::file_cache::FileCache;
-use crate::evaluate::memo::Entry;
+use crate::evaluate::memo::{Entry, Memo};
 use crate::graph::NodeId;
 use crate::literal::FilePath;
 use crate::node_kind::NodeKind;
@@ -19,6 +19,8 @@ pub(crate) enum Supply {
     Nothing,
     /// A literal or default.
     Value(Value),
+    /// What a parameter holds.
+    Given { value: Value, conversion: Option<Arc<ConvertFn>> },
     /// An output of a scheduled node.
     Scheduled { step: usize, output: usize, conversion: Option<Arc<ConvertFn>> },
     /// An output that is known already.
@@ -43,7 +45,7 @@ pub(crate) struct Key {
 }
 
 /// A file and the content it had.
-#[derive(Debug)]
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct FileContent {
     pub(crate) path: PathBuf,
     pub(crate) hash: ContentHash,
@@ -70,6 +72,7 @@ pub(crate) fn gather(
                 inputs.push(Some(value.clone()));
                 continue;
             }
+            Supply::Given { value, conversion } => (Some(value.clone()), conversion),
             Supply::Scheduled { step, output, conversion } => (scheduled(*step, *output), conversion),
             Supply::Known { entry, output, conversion } => {
                 (entry.result.as_ref().ok().and_then(|values| values.get(*output).cloned()), conversion)
@@ -105,9 +108,42 @@ fn paths<'a>(
     })
 }
 
-/// What the result depends on: kind, version, every input's content, and the content of the files it reads.
-pub(crate) fn key(kind: &NodeKind, inputs: &[Option<Value>], base: &Path, cache: &FileCache) -> Result<Key, Failure> {
+/// Where relative paths start, and what is known of files.
+#[derive(Clone, Copy)]
+pub(crate) struct Disk<'a> {
+    /// The folder of the graph that is evaluated.
+    pub(crate) base: &'a Path,
+    /// The folder at which paths spelled in the graph of the run start, seen from `base`.
+    pub(crate) folder: &'a str,
+    pub(crate) cache: &'a FileCache,
+}
+
+impl Disk<'_> {
+    /// What the memo has for a key, unless files that were read for it changed since. The key learns of the files.
+    pub(crate) fn remembered(&self, memo: &Memo, key: &mut Key) -> Option<Arc<Entry>> {
+        let entry = memo.get(key.hash)?;
+        if let Some(files) = &entry.files {
+            if files.iter().any(|file| self.cache.hash(&file.path) != Ok(file.hash)) {
+                return None;
+            }
+            key.files = Some(files.clone());
+        }
+        Some(entry)
+    }
+}
+
+/// What the result depends on: kind, version, every input's content, and the content of the files it reads. Which files
+/// are read within a body is known afterwards only: the memo's entry has them.
+pub(crate) fn key(kind: &NodeKind, inputs: &[Option<Value>], disk: Disk<'_>) -> Result<Key, Failure> {
+    let Disk { base, folder, cache } = disk;
     let mut bytes = key_of_kind(kind, inputs.len());
+    if kind.has_body() {
+        // Paths within mean other files from another folder.
+        for place in [base.as_os_str().as_encoded_bytes(), folder.as_bytes()] {
+            bytes.extend_from_slice(&(place.len() as u64).to_le_bytes());
+            bytes.extend_from_slice(place);
+        }
+    }
     for input in inputs {
         match input {
             Some(value) => {
@@ -134,6 +170,9 @@ pub(crate) fn key_of_kind(kind: &NodeKind, inputs: usize) -> Vec<u8> {
     bytes.extend_from_slice(kind.name().as_bytes());
     bytes.push(0);
     bytes.extend_from_slice(&kind.version().to_le_bytes());
+    if let Some(content) = kind.content {
+        bytes.extend_from_slice(&content.0.to_le_bytes());
+    }
     bytes
 }
 

@@ -6,6 +6,7 @@ use std::time::Duration;
 use lru::LruCache;
 
 use crate::evaluate::Failure;
+use crate::evaluate::inputs::FileContent;
 use crate::report::Report;
 use crate::value::{ContentHash, KeyHasherBuilder, Value};
 
@@ -15,6 +16,8 @@ pub(crate) struct Entry {
     pub(crate) result: Result<Arc<[Value]>, Failure>,
     pub(crate) report: Arc<Report>,
     pub(crate) duration: Duration,
+    /// The files that were read within a body: the entry answers only while they are what they were.
+    pub(crate) files: Option<Arc<[FileContent]>>,
 }
 
 impl Entry {
@@ -91,7 +94,12 @@ mod tests {
 
     fn entry(bytes: usize) -> Arc<Entry> {
         let text = "x".repeat(bytes);
-        Arc::new(Entry { result: Ok(vec![Value::new(text)].into()), report: Arc::default(), duration: Duration::ZERO })
+        Arc::new(Entry {
+            result: Ok(vec![Value::new(text)].into()),
+            report: Arc::default(),
+            duration: Duration::ZERO,
+            files: None,
+        })
     }
 
     #[test]

@@ -6,6 +6,9 @@
 //! 3. *Run*: scheduled nodes run as soon as their inputs are there; each first asks the memo, because an upstream
 //!    node may have recomputed an equal result ([`run`]).
 //!
+//! A node with a body has a run of its own for that body (a `repeat` several), planned when its inputs are there
+//! ([`composite`]). All runs share memo, files and threads; a step that waits for the run of its body holds no thread.
+//!
 //! Nothing is computed twice in one evaluation. Nodes of equal kinds and equal supplies are found equal while planning,
 //! and all but the first take the result of the first, whatever the number of threads. Nodes whose inputs merely turn
 //! out equal find the result in the memo, or, while it is being computed, wait for it ([`flight`]); which of them runs
@@ -14,6 +17,7 @@
 mod blame;
 pub(crate) mod call;
 mod cancel;
+mod composite;
 mod evaluation;
 mod evaluator;
 mod event;
@@ -22,6 +26,7 @@ mod file_cache;
 mod flight;
 pub(crate) mod inputs;
 mod memo;
+mod place;
 mod plan;
 mod run;
 

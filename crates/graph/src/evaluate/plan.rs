@@ -2,23 +2,26 @@
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry as Slot;
-use std::path::Path;
 use std::sync::Arc;
 
-use crate::catalogue::Catalogue;
+use crate::body::Body;
+use crate::catalogue::{Catalogue, ConvertFn};
 use crate::evaluate::Failure;
 use crate::evaluate::blame::Blame;
-use crate::evaluate::file_cache::FileCache;
-use crate::evaluate::inputs::{Key, Supply, gather, key, key_of_kind};
+use crate::evaluate::inputs::{Disk, Key, Supply, gather, key, key_of_kind};
 use crate::evaluate::memo::{Entry, Memo};
-use crate::graph::{Graph, Node, NodeId, Source};
+use crate::evaluate::place::Place;
+use crate::graph::{Node, NodeId, Source};
 use crate::node_kind::NodeKind;
-use crate::value::{ContentHash, ContentHasher, KeyHasherBuilder};
+use crate::port::InputSpec;
+use crate::value::{ContentHash, ContentHasher, KeyHasherBuilder, WireType};
 
 /// A node that may have to run.
 pub(crate) struct Step {
     pub(crate) node: NodeId,
     pub(crate) kind: Arc<NodeKind>,
+    /// What it evaluates, where its kind has a body.
+    pub(crate) body: Option<Arc<Body>>,
     pub(crate) supplies: Vec<Supply>,
     /// Steps that take a value from this one, one entry per step.
     pub(crate) dependents: Vec<usize>,
@@ -56,10 +59,9 @@ pub(crate) struct Plan {
 
 pub(crate) struct Planner<'a> {
     pub(crate) catalogue: &'a Catalogue,
-    pub(crate) graph: &'a Graph,
+    pub(crate) place: &'a Place<'a>,
     pub(crate) memo: &'a Memo,
-    pub(crate) base: &'a Path,
-    pub(crate) files: &'a FileCache,
+    pub(crate) disk: Disk<'a>,
 }
 
 impl Planner<'_> {
@@ -72,16 +74,16 @@ impl Planner<'_> {
             if plan.found.contains_key(&id) {
                 continue;
             }
-            let Some(node) = self.graph.node(id) else { continue };
+            let Some(node) = self.place.graph().node(id) else { continue };
             if !inputs_done {
-                if let Some((key, entry)) = key_of(id).and_then(|key| self.memo.get(key.hash).map(|entry| (key, entry)))
-                {
+                let known = key_of(id).and_then(|mut key| Some((self.disk.remembered(self.memo, &mut key)?, key)));
+                if let Some((entry, key)) = known {
                     plan.note(id, Found::Known(key, entry));
                     continue;
                 }
                 stack.push((id, true));
                 // Reversed, because the last one in is the first one out: inputs are looked at in their order.
-                for source in node.inputs.values().rev() {
+                for source in node.active_sources().rev() {
                     if let Source::Link(link) = source
                         && !plan.found.contains_key(&link.node)
                     {
@@ -102,14 +104,7 @@ impl Planner<'_> {
     }
 
     fn look_at(&self, plan: &mut Plan, id: NodeId, node: &Node) -> Found {
-        let Some(kind) = &node.kind else {
-            let hint = self.catalogue.suggest(&node.kind_name);
-            let hint = hint.map(|s| format!(" Did you mean \"{s}\"?")).unwrap_or_default();
-            return Found::Failed(Failure {
-                port: None,
-                message: format!("the kind {:?} is unknown to this version.{hint}", node.kind_name),
-            });
-        };
+        let Some(kind) = node.acting_kind() else { return Found::Failed(self.unknown_kind(node)) };
         let supplies = match self.supplies(plan, node, kind) {
             Ok(supplies) => supplies,
             Err(failure) => return Found::Failed(failure),
@@ -130,10 +125,10 @@ impl Planner<'_> {
             None => {
                 let number = if sources.is_empty() {
                     let inputs = gather(kind, &supplies, |_, _| None);
-                    match inputs.and_then(|inputs| key(kind, &inputs, self.base, self.files)) {
+                    match inputs.and_then(|inputs| key(kind, &inputs, self.disk)) {
                         Err(failure) => return Found::Failed(failure),
-                        Ok(key) => {
-                            if let Some(entry) = self.memo.get(key.hash) {
+                        Ok(mut key) => {
+                            if let Some(entry) = self.disk.remembered(self.memo, &mut key) {
                                 return Found::Known(key, entry);
                             }
                             key.hash
@@ -159,6 +154,7 @@ impl Planner<'_> {
         plan.steps.push(Step {
             node: id,
             kind: kind.clone(),
+            body: node.body.clone().filter(|_| kind.has_body()),
             supplies,
             dependents: Vec::new(),
             sources,
@@ -168,39 +164,60 @@ impl Planner<'_> {
         Found::Scheduled(step)
     }
 
+    fn unknown_kind(&self, node: &Node) -> Failure {
+        let message = match node.body.as_ref().map(|body| body.kind(self.catalogue, &node.kind_name)) {
+            Some(Err(error)) => error.to_string(),
+            _ if self.catalogue.kind(&node.kind_name).is_some_and(|kind| kind.has_body()) => {
+                "its body could not be understood: correct it in the file".to_owned()
+            }
+            _ => {
+                let hint = self.catalogue.suggest(&node.kind_name);
+                let hint = hint.map(|s| format!(" Did you mean \"{s}\"?")).unwrap_or_default();
+                format!("the kind {:?} is unknown to this version.{hint}", node.kind_name)
+            }
+        };
+        Failure { port: None, message }
+    }
+
     /// Where the values of the inputs come from. What is said here must not depend on what the memo remembers.
     fn supplies(&self, plan: &Plan, node: &Node, kind: &NodeKind) -> Result<Vec<Supply>, Failure> {
         let mut supplies = Vec::with_capacity(kind.inputs().len());
         for spec in kind.inputs() {
             let fail = |message: String| Failure { port: Some(spec.name.clone()), message };
             let supply = match node.inputs.get(&spec.name) {
-                Some(Source::Literal { value, .. }) => Supply::Value(value.clone()),
+                Some(Source::Literal { value, .. }) => Supply::Value(self.place.spelled(value)),
+                Some(Source::Parameter(name)) => match self.place.given.get(name) {
+                    Some(value) => {
+                        let conversion = self.conversion(value.wire(), spec.wire).map_err(fail)?;
+                        Supply::Given { value: value.clone(), conversion }
+                    }
+                    None => self.nothing(spec, Some(name)).map_err(fail)?,
+                },
                 Some(Source::Unread(_)) => {
                     return Err(fail("the file holds something here that could not be understood".to_owned()));
                 }
                 Some(Source::Link(link)) => {
-                    let Some(source) = self.graph.node(link.node) else {
+                    let Some(source) = self.place.graph().node(link.node) else {
                         return Err(fail("it is linked to a node that is gone".to_owned()));
                     };
                     let Some(found) = plan.found.get(&link.node) else {
                         return Err(fail(format!("{:?} could not be reached", source.name)));
                     };
-                    let Some(source_kind) = &source.kind else {
+                    let Some(source_kind) = source.acting_kind() else {
                         supplies.push(Supply::Missing(vec![link.node]));
                         continue;
                     };
                     let Some((output, output_spec)) = source_kind.find_output(&link.output) else {
-                        return Err(fail(format!("{:?} has no output {:?}", source.name, link.output)));
-                    };
-                    let conversion =
-                        if output_spec.wire == spec.wire {
-                            None
+                        let (name, output) = (&source.name, &link.output);
+                        return Err(fail(if source.muted {
+                            format!(
+                                "{name:?} is muted and has nothing to pass on at {output:?}: unmute it, or link another"
+                            )
                         } else {
-                            let found = self.catalogue.find_conversion(output_spec.wire, spec.wire);
-                            Some(found.cloned().ok_or_else(|| {
-                                fail(format!("it takes {}, and {} arrives", spec.wire, output_spec.wire))
-                            })?)
-                        };
+                            format!("{name:?} has no output {output:?}")
+                        }));
+                    };
+                    let conversion = self.conversion(output_spec.wire, spec.wire).map_err(fail)?;
                     match found {
                         Found::Known(_, entry) if entry.result.is_ok() => {
                             Supply::Known { entry: entry.clone(), output, conversion }
@@ -210,17 +227,31 @@ impl Planner<'_> {
                         Found::Waiting(on) => Supply::Missing(on.clone()),
                     }
                 }
-                None => match &spec.default_value {
-                    Some(value) => Supply::Value(value.clone()),
-                    None if spec.optional => Supply::Nothing,
-                    None => {
-                        return Err(fail(format!("nothing is connected: link an output that gives {}", spec.wire)));
-                    }
-                },
+                None => self.nothing(spec, None).map_err(fail)?,
             };
             supplies.push(supply);
         }
         Ok(supplies)
+    }
+}
+
+impl Planner<'_> {
+    fn conversion(&self, from: WireType, to: WireType) -> Result<Option<Arc<ConvertFn>>, String> {
+        if from == to {
+            return Ok(None);
+        }
+        let found = self.catalogue.find_conversion(from, to);
+        found.cloned().map(Some).ok_or_else(|| format!("it takes {to}, and {from} arrives"))
+    }
+
+    /// What an input gets where nothing of its own is there, or the parameter there holds nothing.
+    fn nothing(&self, spec: &InputSpec, parameter: Option<&str>) -> Result<Supply, String> {
+        match (&spec.default_value, parameter) {
+            (Some(value), _) => Ok(Supply::Value(self.place.spelled(value))),
+            (None, _) if spec.optional => Ok(Supply::Nothing),
+            (None, None) => Err(format!("nothing is connected: link an output that gives {}", spec.wire)),
+            (None, Some(name)) => Err(format!("the parameter \"{name}\" holds nothing, and {} is needed", spec.wire)),
+        }
     }
 }
 
@@ -238,7 +269,7 @@ impl Plan {
         for supply in supplies {
             match supply {
                 Supply::Nothing | Supply::Missing(_) => bytes.push(0),
-                Supply::Value(value) => {
+                Supply::Value(value) | Supply::Given { value, .. } => {
                     bytes.push(1);
                     bytes.extend_from_slice(&value.hash().0.to_le_bytes());
                 }

@@ -1,19 +1,22 @@
-//! Runs the steps of a plan, on one thread or many.
+//! Runs the steps of plans, on one thread or many.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use crate::evaluate::blame::{Blame, names};
+use crate::catalogue::Catalogue;
+use crate::evaluate::blame::Blame;
 use crate::evaluate::call::call;
+use crate::evaluate::composite::Composite;
 use crate::evaluate::file_cache::FileCache;
 use crate::evaluate::flight::{Boarding, Flights};
-use crate::evaluate::inputs::{FileBytes, Key, Supply, failure, files, gather, key};
+use crate::evaluate::inputs::{Disk, FileBytes, Key, Supply, failure, files, gather, key};
 use crate::evaluate::memo::{Entry, Memo};
+use crate::evaluate::place::Place;
 use crate::evaluate::plan::{Plan, Step};
-use crate::evaluate::{CancelToken, Event, EventKind, Events, Failure};
-use crate::graph::{Graph, NodeId};
+use crate::evaluate::{CancelToken, EventKind, Events, Failure};
+use crate::graph::NodeId;
 use crate::ports::NodeError;
 use crate::report::Report;
 use crate::value::{ContentHash, Value};
@@ -32,7 +35,7 @@ pub(crate) enum Ended {
 }
 
 impl Ended {
-    fn of(key: Key, entry: &Entry, ran: bool) -> Self {
+    pub(crate) fn of(key: Key, entry: &Entry, ran: bool) -> Self {
         let duration = entry.duration;
         match &entry.result {
             Ok(values) => Self::Done { key, values: Some(values.clone()), report: entry.report.clone(), duration, ran },
@@ -53,21 +56,36 @@ impl Ended {
 enum Turn {
     /// It ended; with the key that others may have been parked for.
     Ended(Ended, Option<ContentHash>),
-    /// Another step computes the same; that one ends both.
-    Parked,
+    /// Another step computes the same, and ends both; or its body is being evaluated, and ends it.
+    Pending,
 }
 
+/// What the runs of an evaluation share.
 pub(crate) struct Runner<'a> {
-    pub(crate) graph: &'a Graph,
-    pub(crate) plan: &'a Plan,
+    pub(crate) catalogue: &'a Catalogue,
     pub(crate) memo: &'a Memo,
     pub(crate) base: &'a Path,
     pub(crate) cancel: &'a CancelToken,
     pub(crate) events: &'a dyn Events,
     pub(crate) files: &'a FileCache,
-    pub(crate) flights: Flights,
+    pub(crate) flights: Flights<Task<'a>>,
     /// The report of nodes that have nothing to say.
     pub(crate) silence: Arc<Report>,
+    /// How many nodes were planned so far, in all runs.
+    pub(crate) planned: Mutex<usize>,
+    /// Threads to work with.
+    pub(crate) width: usize,
+}
+
+/// A plan that is carried out: that of the evaluated graph, or that of a body.
+pub(crate) struct Run<'a> {
+    pub(crate) place: Place<'a>,
+    pub(crate) plan: Plan,
+    states: Vec<State>,
+    /// Steps that have not ended.
+    left: AtomicUsize,
+    /// The step whose body it evaluates, and for which time.
+    pub(crate) within: Option<(Arc<Composite<'a>>, usize)>,
 }
 
 /// Working state of one step. Values are dropped as soon as the last step that takes them has run.
@@ -78,94 +96,146 @@ struct State {
     ended: Mutex<Option<Ended>>,
 }
 
-fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    // Each holds one value that is replaced whole, so a poisoned lock still guards a whole value.
+pub(crate) fn locked<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    // Each holds values that are replaced whole, so a poisoned lock still guards whole values.
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl Runner<'_> {
-    /// Runs all steps; one entry per step.
-    pub(crate) fn run(&self, pool: Option<&rayon::ThreadPool>) -> Vec<Ended> {
-        let states: Vec<State> = self
-            .plan
-            .steps
-            .iter()
-            .map(|step| State {
-                pending: AtomicUsize::new(step.sources.len()),
-                takers: AtomicUsize::new(step.dependents.len()),
-                values: Mutex::new(None),
-                ended: Mutex::new(None),
-            })
-            .collect();
-        match pool.filter(|_| !self.is_chain()) {
-            None => (0..states.len()).for_each(|step| drop(self.run_step(&states, step))),
-            Some(pool) => pool.scope(|scope| {
-                for (step, _) in self.plan.steps.iter().enumerate().filter(|(_, s)| s.sources.is_empty()) {
-                    let states = &states;
-                    scope.spawn(move |scope| self.run_from(states, step, scope));
-                }
-            }),
-        }
-        states.into_iter().map(|s| locked(&s.ended).take().unwrap_or(Ended::Cancelled)).collect()
+/// A step that is ready, or, without a step, a run of a body that is over.
+pub(crate) struct Task<'a> {
+    run: Arc<Run<'a>>,
+    step: Option<usize>,
+}
+
+/// What came of a task.
+#[derive(Default)]
+pub(crate) struct Led<'a> {
+    /// Steps that ended.
+    ended: Vec<(Arc<Run<'a>>, usize)>,
+    /// Runs that began.
+    pub(crate) started: Vec<Arc<Run<'a>>>,
+}
+
+impl<'a> Run<'a> {
+    pub(crate) fn new(place: Place<'a>, plan: Plan, within: Option<(Arc<Composite<'a>>, usize)>) -> Arc<Self> {
+        let state = |step: &Step| State {
+            pending: AtomicUsize::new(step.sources.len()),
+            takers: AtomicUsize::new(step.dependents.len()),
+            values: Mutex::new(None),
+            ended: Mutex::new(None),
+        };
+        let states: Vec<State> = plan.steps.iter().map(state).collect();
+        Arc::new(Self { place, plan, left: AtomicUsize::new(states.len()), states, within })
+    }
+
+    /// How a step ended.
+    pub(crate) fn ended(&self, step: usize) -> Ended {
+        self.states.get(step).and_then(|state| locked(&state.ended).clone()).unwrap_or(Ended::Cancelled)
     }
 
     /// Whether no two steps could ever run at the same time, so that a thread pool has nothing to offer.
     fn is_chain(&self) -> bool {
         let steps = &self.plan.steps;
-        steps.iter().filter(|s| s.sources.is_empty()).count() <= 1 && steps.iter().all(|s| s.dependents.len() <= 1)
+        steps.iter().filter(|s| s.sources.is_empty()).count() <= 1
+            && steps.iter().all(|s| s.dependents.len() <= 1 && s.body.is_none())
+    }
+}
+
+impl<'a> Runner<'a> {
+    /// Carries out the plan of the evaluated graph.
+    pub(crate) fn run(&self, run: &Arc<Run<'a>>, pool: Option<&rayon::ThreadPool>) {
+        match pool.filter(|_| !run.is_chain()) {
+            None => self.run_alone(run),
+            Some(pool) => pool.scope(|scope| {
+                for task in sources(run) {
+                    scope.spawn(move |scope| self.run_from(task, scope));
+                }
+            }),
+        }
     }
 
-    fn run_from<'s>(&'s self, states: &'s [State], mut step: usize, scope: &rayon::Scope<'s>) {
-        loop {
-            // The first dependent that becomes ready runs here: a chain never changes threads.
-            let mut next = None;
-            for ended in self.run_step(states, step) {
-                for &dependent in &self.plan.steps[ended].dependents {
-                    if states[dependent].pending.fetch_sub(1, Ordering::AcqRel) == 1 {
-                        if next.is_none() {
-                            next = Some(dependent);
-                        } else {
-                            scope.spawn(move |scope| self.run_from(states, dependent, scope));
-                        }
-                    }
-                }
+    /// Carries out a plan on this thread: the steps in their order, and the run of a body when its step comes.
+    fn run_alone(&self, run: &Arc<Run<'a>>) {
+        let mut runs = vec![(run.clone(), 0)];
+        let mut led = Led::default();
+        while let Some((run, next)) = runs.last_mut() {
+            let (run, step) = (run.clone(), *next);
+            if step < run.states.len() {
+                *next += 1;
+                self.run_step(&run, step, &mut led);
+            } else {
+                runs.pop();
+                self.run_is_over(&run, &mut led);
             }
-            match next {
-                Some(ready) => step = ready,
-                None => return,
+            led.ended.clear();
+            runs.extend(led.started.drain(..).rev().map(|run| (run, 0)));
+        }
+    }
+
+    fn run_from<'s>(&'s self, task: Task<'a>, scope: &rayon::Scope<'s>)
+    where
+        'a: 's,
+    {
+        let mut next = Some(task);
+        let mut led = Led::default();
+        while let Some(Task { run, step }) = next.take() {
+            match step {
+                Some(step) => self.run_step(&run, step, &mut led),
+                None => self.run_is_over(&run, &mut led),
+            }
+            // The first task that becomes ready runs here: a chain never changes threads.
+            led.each_ready(|ready| {
+                if next.is_none() {
+                    next = Some(ready);
+                } else {
+                    scope.spawn(move |scope| self.run_from(ready, scope));
+                }
+            });
+        }
+    }
+
+    fn emit(&self, run: &Run<'a>, step: &Step, kind: EventKind<'_>) {
+        run.place.emit(self.events, step.node, kind);
+    }
+
+    pub(crate) fn disk<'d>(&'d self, place: &'d Place<'a>) -> Disk<'d> {
+        Disk { base: self.base, folder: &place.folder, cache: self.files }
+    }
+
+    /// Runs a step, where nothing keeps it from running.
+    fn run_step(&self, run: &Arc<Run<'a>>, index: usize, led: &mut Led<'a>) {
+        match self.result(run, index, led) {
+            Turn::Pending => {}
+            Turn::Ended(ended, flight) => self.land(run, index, ended, flight, led),
+        }
+    }
+
+    /// Ends a step, and those that were parked for its result.
+    pub(crate) fn land(
+        &self,
+        run: &Arc<Run<'a>>,
+        index: usize,
+        ended: Ended,
+        flight: Option<ContentHash>,
+        led: &mut Led<'a>,
+    ) {
+        let parked = flight.map(|key| self.flights.land(key)).unwrap_or_default();
+        let same = if parked.is_empty() { None } else { Some(ended.clone().taken()) };
+        self.end(run, index, ended);
+        led.ended.push((run.clone(), index));
+        for (task, same) in parked.into_iter().zip(std::iter::repeat(same).flatten()) {
+            if let Task { run, step: Some(step) } = task {
+                self.end(&run, step, same);
+                led.ended.push((run, step));
             }
         }
     }
 
-    fn emit(&self, step: &Step, kind: EventKind<'_>) {
-        let name = self.graph.node(step.node).map_or("", |node| node.name());
-        self.events.event(&Event { node: step.node, name, kind });
-    }
-
-    /// Runs a step, where nothing keeps it from running. Returns the steps that ended: none where it was parked, and
-    /// those that were parked for its result too.
-    fn run_step(&self, states: &[State], index: usize) -> impl Iterator<Item = usize> + use<> {
-        let (this, parked) = match self.result(states, index) {
-            Turn::Parked => (None, Vec::new()),
-            Turn::Ended(ended, flight) => {
-                let parked = flight.map(|key| self.flights.land(key)).unwrap_or_default();
-                if parked.is_empty() {
-                    self.end(states, index, ended);
-                } else {
-                    self.end(states, index, ended.clone());
-                    parked.iter().for_each(|waiting| self.end(states, *waiting, ended.clone().taken()));
-                }
-                (Some(index), parked)
-            }
-        };
-        this.into_iter().chain(parked)
-    }
-
-    fn end(&self, states: &[State], index: usize, mut ended: Ended) {
-        let step = &self.plan.steps[index];
+    fn end(&self, run: &Run<'a>, index: usize, mut ended: Ended) {
+        let (step, states) = (&run.plan.steps[index], &run.states);
         match &mut ended {
             Ended::Done { values, duration, ran, .. } => {
-                self.emit(step, if *ran { EventKind::Finished(*duration) } else { EventKind::Hit });
+                self.emit(run, step, if *ran { EventKind::Finished(*duration) } else { EventKind::Hit });
                 if !step.dependents.is_empty() {
                     locked(&states[index].values).clone_from(values);
                 }
@@ -173,9 +243,9 @@ impl Runner<'_> {
                     *values = None;
                 }
             }
-            Ended::Failed { failure, .. } => self.emit(step, EventKind::Failed(failure)),
-            Ended::Waiting(on) => self.emit(step, EventKind::Waiting(&names(self.graph, on))),
-            Ended::Cancelled => self.emit(step, EventKind::Cancelled),
+            Ended::Failed { failure, .. } => self.emit(run, step, EventKind::Failed(failure)),
+            Ended::Waiting(on) => self.emit(run, step, EventKind::Waiting(&run.place.names(on))),
+            Ended::Cancelled => self.emit(run, step, EventKind::Cancelled),
         }
         *locked(&states[index].ended) = Some(ended);
         for &source in &step.sources {
@@ -185,9 +255,9 @@ impl Runner<'_> {
         }
     }
 
-    fn result(&self, states: &[State], index: usize) -> Turn {
-        let step = &self.plan.steps[index];
-        if let Some(stopped) = self.stopped_by_sources(states, step) {
+    fn result(&self, run: &Arc<Run<'a>>, index: usize, led: &mut Led<'a>) -> Turn {
+        let (step, states) = (&run.plan.steps[index], &run.states);
+        if let Some(stopped) = stopped_by_sources(run, step) {
             return Turn::Ended(stopped, None);
         }
         if self.cancel.is_cancelled() {
@@ -205,7 +275,8 @@ impl Runner<'_> {
             Ok(inputs) => inputs,
             Err(failure) => return failed(failure),
         };
-        let mut key = match key(&step.kind, &inputs, self.base, self.files) {
+        let disk = self.disk(&run.place);
+        let mut key = match key(&step.kind, &inputs, disk) {
             Ok(key) => key,
             Err(failure) => return failed(failure),
         };
@@ -216,24 +287,32 @@ impl Runner<'_> {
             }
             // The key again, because it must be that of the very bytes that the node gets.
             let read = files(&step.kind, &inputs, self.base, self.files);
-            match read.and_then(|read| Ok((read, self::key(&step.kind, &inputs, self.base, self.files)?))) {
+            match read.and_then(|read| Ok((read, self::key(&step.kind, &inputs, disk)?))) {
                 Ok(read) => (contents, key) = read,
                 Err(failure) => return failed(failure),
             }
         }
         let flight = key.hash;
-        match self.flights.board(flight, index, self.memo) {
+        let task = Task { run: run.clone(), step: Some(index) };
+        match self.flights.board(flight, task, || disk.remembered(self.memo, &mut key)) {
             Boarding::Remembered(entry) => Turn::Ended(Ended::of(key, &entry, false), None),
-            Boarding::Parked => Turn::Parked,
-            Boarding::Computes => Turn::Ended(self.compute(step, key, &inputs, &contents), Some(flight)),
+            Boarding::Parked => Turn::Pending,
+            Boarding::Computes => match &step.body {
+                None => Turn::Ended(self.compute(run, step, key, &inputs, &contents), Some(flight)),
+                Some(body) => {
+                    self.emit(run, step, EventKind::Started);
+                    self.begin(Composite::new(run.clone(), index, body.clone(), key, inputs), led);
+                    Turn::Pending
+                }
+            },
         }
     }
 
-    fn compute(&self, step: &Step, key: Key, inputs: &[Option<Value>], files: &[FileBytes]) -> Ended {
-        self.emit(step, EventKind::Started);
+    fn compute(&self, run: &Run<'a>, step: &Step, key: Key, inputs: &[Option<Value>], files: &[FileBytes]) -> Ended {
+        self.emit(run, step, EventKind::Started);
         let begun = Instant::now();
         let told_to_stop = AtomicBool::new(false);
-        let result = self.call(step, inputs, files, &told_to_stop);
+        let result = self.call(run, step, inputs, files, &told_to_stop);
         let duration = begun.elapsed();
         if told_to_stop.into_inner() {
             // Even a good result may be one that stopped halfway, and an error may say no more than that.
@@ -244,36 +323,21 @@ impl Runner<'_> {
             Err(NodeError::Failed { input, message }) => {
                 (Err(failure(&step.kind, input, message)), self.silence.clone())
             }
-            // Most nodes say nothing; they share one empty report.
-            Ok((values, report)) if report.is_empty() => (Ok(values.into()), self.silence.clone()),
-            Ok((values, report)) => (Ok(values.into()), Arc::new(report)),
+            Ok((values, report)) => (Ok(values.into()), self.shared(report)),
         };
-        let entry = Arc::new(Entry { result, report, duration });
+        let entry = Arc::new(Entry { result, report, duration, files: None });
         self.memo.insert(key.hash, entry.clone());
         Ended::of(key, &entry, true)
     }
 
-    fn stopped_by_sources(&self, states: &[State], step: &Step) -> Option<Ended> {
-        let mut blame = Blame::default();
-        let mut cancelled = false;
-        for supply in &step.supplies {
-            match supply {
-                Supply::Missing(nodes) => blame.add(nodes),
-                Supply::Scheduled { step: source, .. } => match &*locked(&states[*source].ended) {
-                    Some(Ended::Failed { .. }) => blame.add(&[self.plan.steps[*source].node]),
-                    Some(Ended::Waiting(on)) => blame.add(on),
-                    Some(Ended::Cancelled) => cancelled = true,
-                    Some(Ended::Done { .. }) | None => {}
-                },
-                Supply::Nothing | Supply::Value(_) | Supply::Known { .. } => {}
-            }
-        }
-        let waiting = blame.into_nodes().map(Ended::Waiting);
-        waiting.or_else(|| cancelled.then_some(Ended::Cancelled))
+    /// Most nodes say nothing; they share one empty report.
+    pub(crate) fn shared(&self, report: Report) -> Arc<Report> {
+        if report.is_empty() { self.silence.clone() } else { Arc::new(report) }
     }
 
     fn call(
         &self,
+        run: &Run<'a>,
         step: &Step,
         inputs: &[Option<Value>],
         files: &[FileBytes],
@@ -282,7 +346,7 @@ impl Runner<'_> {
         let kind = &*step.kind;
         let progress = |fraction: f64| {
             let done = if fraction.is_nan() { 0.0 } else { fraction.clamp(0.0, 1.0) };
-            self.emit(step, EventKind::Progress(done));
+            self.emit(run, step, EventKind::Progress(done));
             let stop = self.cancel.is_cancelled();
             if stop {
                 told_to_stop.store(true, Ordering::Relaxed);
@@ -291,6 +355,53 @@ impl Runner<'_> {
         };
         call(kind, inputs, files, self.base, &progress)
     }
+}
+
+/// The steps of a run that can begin at once; for one without steps, that it is over.
+fn sources<'a>(run: &Arc<Run<'a>>) -> impl Iterator<Item = Task<'a>> {
+    let steps = run.plan.steps.iter().enumerate().filter(|(_, step)| step.sources.is_empty());
+    let mut tasks: Vec<_> = steps.map(|(step, _)| Task { run: run.clone(), step: Some(step) }).collect();
+    if run.states.is_empty() {
+        tasks.push(Task { run: run.clone(), step: None });
+    }
+    tasks.into_iter()
+}
+
+impl<'a> Led<'a> {
+    /// What can be done now; forgets what led to it.
+    fn each_ready(&mut self, mut then: impl FnMut(Task<'a>)) {
+        for (run, ended) in self.ended.drain(..) {
+            for &dependent in &run.plan.steps[ended].dependents {
+                if run.states[dependent].pending.fetch_sub(1, Ordering::AcqRel) == 1 {
+                    then(Task { run: run.clone(), step: Some(dependent) });
+                }
+            }
+            if run.left.fetch_sub(1, Ordering::AcqRel) == 1 {
+                then(Task { run, step: None });
+            }
+        }
+        self.started.drain(..).for_each(|run| sources(&run).for_each(&mut then));
+    }
+}
+
+/// What keeps a step from running.
+fn stopped_by_sources(run: &Run<'_>, step: &Step) -> Option<Ended> {
+    let mut blame = Blame::default();
+    let mut cancelled = false;
+    for supply in &step.supplies {
+        match supply {
+            Supply::Missing(nodes) => blame.add(nodes),
+            Supply::Scheduled { step: source, .. } => match &*locked(&run.states[*source].ended) {
+                Some(Ended::Failed { .. }) => blame.add(&[run.plan.steps[*source].node]),
+                Some(Ended::Waiting(on)) => blame.add(on),
+                Some(Ended::Cancelled) => cancelled = true,
+                Some(Ended::Done { .. }) | None => {}
+            },
+            Supply::Nothing | Supply::Value(_) | Supply::Given { .. } | Supply::Known { .. } => {}
+        }
+    }
+    let waiting = blame.into_nodes().map(Ended::Waiting);
+    waiting.or_else(|| cancelled.then_some(Ended::Cancelled))
 }
 
 /// What a step gave, for its twin.

@@ -1,11 +1,9 @@
 //! What RON says about a text that it can't read, in the words of those who write graphs.
 
 use ron::error::{Error, SpannedError};
-use ron::value::RawValue;
 
 use crate::file::FileError;
 use crate::file::place::LineIndex;
-use crate::file::tree::FileTree;
 
 /// What is wrong, in plain words.
 pub(super) fn in_words(error: &Error) -> String {
@@ -100,8 +98,8 @@ fn wrong_length(expected: &str, found: usize) -> String {
     }
 }
 
-pub(super) fn syntax_error(text: &str, lines: &LineIndex, error: &SpannedError) -> FileError {
-    let byte = |place: &ron::error::Position| lines.byte(text, place.line, place.col);
+pub(super) fn syntax_error(text: &str, lines: &LineIndex<'_>, error: &SpannedError) -> FileError {
+    let byte = |place: &ron::error::Position| lines.byte(place.line, place.col);
     let (start, end) = (byte(&error.span.start), byte(&error.span.end));
     let ends_early = matches!(error.code, Error::Eof | Error::ExpectedStringEnd | Error::UnclosedBlockComment)
         || (error.code != Error::TrailingCharacters && text.get(end..).is_none_or(|rest| rest.trim().is_empty()));
@@ -126,11 +124,42 @@ pub(super) fn syntax_error(text: &str, lines: &LineIndex, error: &SpannedError) 
 }
 
 /// Where the file begins with attributes, which RON allows, but which a graph has no use for.
-pub(super) fn attributes(text: &str, tree: &FileTree<'_>) -> Option<usize> {
-    let fields = [tree.version, tree.notes].into_iter().flatten().chain(tree.unknown.iter().map(|(_, raw)| *raw));
-    let places = fields.map(|raw| (raw.get_ron().as_ptr() as usize).saturating_sub(text.as_ptr() as usize));
-    let head = text.get(..places.min().unwrap_or(text.len()))?;
-    // Before the first attribute there is nothing but white space and comments, and so a value may follow.
-    let mut candidates = head.match_indices("#![").map(|(at, _)| at);
-    candidates.find(|at| RawValue::from_ron(&format!("{}0", &head[..*at])).is_ok())
+pub(super) fn attributes(text: &str) -> Option<usize> {
+    let at = text.len() - behind_blanks(text).len();
+    text[at..].starts_with('#').then_some(at)
+}
+
+/// The text behind white space and comments.
+fn behind_blanks(text: &str) -> &str {
+    let mut rest = text.trim_start();
+    loop {
+        rest = if let Some(line) = rest.strip_prefix("//") {
+            line.find('\n').map_or("", |end| &line[end..])
+        } else if rest.starts_with("/*") {
+            behind_comment(rest)
+        } else {
+            return rest;
+        }
+        .trim_start();
+    }
+}
+
+/// The text behind a block comment, which may hold others.
+fn behind_comment(text: &str) -> &str {
+    let (mut at, mut depth) = (0, 0_usize);
+    while let Some(found) = text[at..].find(['/', '*']) {
+        at += found;
+        let rest = &text[at..];
+        if rest.starts_with("/*") {
+            (at, depth) = (at + 2, depth + 1);
+        } else if rest.starts_with("*/") {
+            (at, depth) = (at + 2, depth.saturating_sub(1));
+            if depth == 0 {
+                return &text[at..];
+            }
+        } else {
+            at += 1;
+        }
+    }
+    ""
 }

@@ -13,7 +13,7 @@ use super::frozen::{Freezer, Frozen, ThawError};
 use super::text;
 use crate::catalogue::Catalogue;
 use crate::evaluate::{Evaluator, EvaluatorOptions, Failure, OutcomeState, Request};
-use crate::file::{number, quoted};
+use crate::file::{Project, number, quoted};
 use crate::graph::{Graph, NodeId};
 use crate::harness::{Harness, Trial, TrialError};
 use crate::node_kind::NodeKind;
@@ -60,6 +60,12 @@ pub enum FreezeError {
         /// Its type.
         wire: WireType,
     },
+    /// The kind does nothing without the graph within.
+    #[error("a node of kind {0} does nothing by itself: open the graph within, and freeze a node there")]
+    HasBody(String),
+    /// The node does not do its work.
+    #[error("the node is muted: unmute it first")]
+    Muted,
     /// The text is no golden file.
     #[error("{line}:{column}: this is no golden file: {message}; freeze the node again")]
     Syntax {
@@ -132,8 +138,30 @@ impl Golden {
         base: &Path,
         tolerance: Tolerance,
     ) -> Result<Self, FreezeError> {
-        let kind = graph.node(node).and_then(|n| n.kind()).cloned().ok_or(FreezeError::NoNode)?;
-        let Seen { inputs, files, outputs } = watched(catalogue, graph, node, &kind, base)?;
+        Self::of_project(catalogue, graph, node, base, &Project::within(base), tolerance)
+    }
+
+    /// As [`Golden::of`], where the graph may read the files of a project.
+    ///
+    /// # Errors
+    /// As [`Golden::of`].
+    pub fn of_project(
+        catalogue: &Catalogue,
+        graph: &Graph,
+        node: NodeId,
+        base: &Path,
+        project: &Project,
+        tolerance: Tolerance,
+    ) -> Result<Self, FreezeError> {
+        let found = graph.node(node).ok_or(FreezeError::NoNode)?;
+        let kind = found.kind().cloned().ok_or(FreezeError::NoNode)?;
+        if kind.has_body() {
+            return Err(FreezeError::HasBody(kind.name().to_owned()));
+        }
+        if found.is_muted() {
+            return Err(FreezeError::Muted);
+        }
+        let Seen { inputs, files, outputs } = watched(catalogue, graph, &kind, node, base, project)?;
         let frozen = |name: &str, wire: WireType, value: &Value| {
             let port = || format!("\"{name}\"");
             let freezer = catalogue.freezer(wire).ok_or_else(|| FreezeError::NotFreezable { port: port(), wire })?;
@@ -269,9 +297,10 @@ impl Golden {
 fn watched(
     catalogue: &Catalogue,
     graph: &Graph,
-    node: NodeId,
     kind: &NodeKind,
+    node: NodeId,
     base: &Path,
+    project: &Project,
 ) -> Result<Seen, FreezeError> {
     let seen = Arc::new(Mutex::new(Seen::default()));
     let sink = seen.clone();
@@ -289,7 +318,7 @@ fn watched(
         node.kind = Some(Arc::new(watching));
     }
     let mut evaluator = Evaluator::new(&EvaluatorOptions { threads: 1, ..Default::default() });
-    let evaluation = evaluator.evaluate(catalogue, &graph, &Request::nodes(&[node]).base(base));
+    let evaluation = evaluator.evaluate(catalogue, &graph, &Request::nodes(&[node]).base(base).project(project));
     match evaluation.outcome(node).map(|outcome| &outcome.state) {
         Some(OutcomeState::Done { .. }) => {
             Ok(std::mem::take(&mut *seen.lock().unwrap_or_else(PoisonError::into_inner)))

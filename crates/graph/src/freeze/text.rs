@@ -30,7 +30,7 @@ pub(super) fn write(text: &mut String, frozen: &Frozen, level: usize) {
             let _ = write!(text, "Bytes({})", quoted(content));
         }
         Frozen::Nothing => text.push_str("Nothing"),
-        Frozen::List(parts) => block(text, "List([", parts, "])", level, |text, part, level| write(text, part, level)),
+        Frozen::List(parts) => block(text, "List([", parts, "])", level, write),
         Frozen::Record(fields) => block(text, "Record([", fields, "])", level, |text, (name, value), level| {
             let _ = write!(text, "({}, ", quoted(name));
             write(text, value, level);

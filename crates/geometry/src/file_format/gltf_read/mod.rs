@@ -14,12 +14,15 @@ use crate::mesh::Mesh;
 
 const FORMAT: &str = "glTF";
 
+/// Most indices and positions that are read, counted again wherever they are used again, from a file of so many bytes: a
+/// small file can show one mesh through many nodes, and must not become gigabytes. Without copies, a position takes 12
+/// bytes and an index at least one.
+fn most_entries(bytes: usize) -> usize {
+    bytes.saturating_mul(4).saturating_add(1_000_000)
+}
+
 /// Triangles between two questions whether to go on.
 const TRIANGLES: usize = 1 << 14;
-
-/// Most indices and positions that are read, counted again wherever they are used again: a small file can show one large
-/// mesh through many nodes.
-const MAX_ENTRIES: usize = 100_000_000;
 
 /// The triangles of a glTF 2.0 file, `.glb` or `.gltf` with embedded data, as one mesh a node, in metres and placed in
 /// the world.
@@ -53,7 +56,7 @@ pub fn read_while(bytes: &[u8], progress: &dyn Fn(f64) -> bool) -> Result<Vec<Me
     let container = Container::open(bytes)?;
     let root = &container.root;
     let mut meshes = Vec::new();
-    let mut entries = 0_usize;
+    let (mut entries, most) = (0_usize, most_entries(bytes.len()));
     for placed in scene_walk::nodes_with_meshes(root)? {
         let source = root.get(placed.mesh).ok_or_else(|| {
             malformed(format!("node {}", placed.node), format!("mesh {} is not there", placed.mesh.value()))
@@ -68,10 +71,10 @@ pub fn read_while(bytes: &[u8], progress: &dyn Fn(f64) -> bool) -> Result<Vec<Me
             let place = format!("mesh {}, primitive {index}", placed.mesh.value());
             let Some(attributes) = Attributes::of(primitive, &place)? else { continue };
             entries = entries.saturating_add(attributes.entry_count(&container, &place)?);
-            if entries > MAX_ENTRIES {
+            if entries > most {
                 return Err(ReadError::Unsupported {
                     format: FORMAT,
-                    what: format!("more than {MAX_ENTRIES} indices and vertices"),
+                    what: format!("more than {most} indices and vertices in a file of {} bytes", bytes.len()),
                     remedy: "simplify the meshes, or export fewer copies of them",
                 });
             }

@@ -249,6 +249,7 @@ impl File {
         pace(object.corners.len() / 2)?;
         let positions: Vec<DVec3> = vertices.iter().map(|&vertex| self.positions[vertex]).collect();
         let corners: Vec<u32> = object.corners.iter().map(|corner| used.places[corner.vertex]).collect();
+        pace(object.corners.len() * 3 / 4)?;
         let counts = polygons().map(|polygon| polygon.len());
         let failed = |source| ReadError::Mesh { name: object.name.clone(), source };
         let mut mesh = Mesh::from_corners(positions, corners, counts).map_err(failed)?.named(&object.name);
@@ -261,10 +262,15 @@ impl File {
             let mut normals = Vec::with_capacity(object.corners.len());
             for polygon in polygons() {
                 pace((object.corners.len() + polygon.start) / 2)?;
-                let own = || vector_area(object.corners[polygon.clone()].iter().map(|c| self.positions[c.vertex]));
+                let mut known = None;
+                let mut own = || {
+                    let corners = object.corners[polygon.clone()].iter().map(|c| self.positions[c.vertex]);
+                    // Once for all corners of a polygon, which may be many.
+                    *known.get_or_insert_with(|| vector_area(corners).try_normalize().unwrap_or(DVec3::Y))
+                };
                 for corner in &object.corners[polygon.clone()] {
                     let given = corner.normal.map_or(DVec3::ZERO, |normal| self.normals[normal]);
-                    normals.push(given.try_normalize().or_else(|| own().try_normalize()).unwrap_or(DVec3::Y));
+                    normals.push(given.try_normalize().unwrap_or_else(&mut own));
                 }
             }
             mesh = mesh.with_normals(normals).map_err(failed)?;

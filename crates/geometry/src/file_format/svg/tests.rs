@@ -187,8 +187,8 @@ fn deep_nesting_is_read_to_its_limit_and_refused_beyond() {
     let nested = |depth: usize| {
         format!(r#"{HEAD}{}<path d="M0 0h9v9"/>{}</svg>"#, r#"<g opacity="0.5">"#.repeat(depth), "</g>".repeat(depth))
     };
-    assert_eq!(read(nested(MAX_DEPTH - 2).as_bytes(), 0.1).unwrap().len(), 1);
-    for depth in [MAX_DEPTH, 100_000] {
+    assert_eq!(read(nested(extent::MAX_DEPTH as usize - 2).as_bytes(), 0.1).unwrap().len(), 1);
+    for depth in [extent::MAX_DEPTH as usize, 100_000] {
         assert!(refusal(&nested(depth)).contains("nested deeper than 256"));
     }
 }

@@ -5,6 +5,7 @@ use crate::edit::Edit;
 use crate::edit::NodeRecord;
 use crate::edit::compound::{Plan, address, fit, input_wire, output_wire};
 use crate::graph::{Graph, GraphError, Link, NodeId, Source};
+use crate::interface::{GraphOutput, OutputSource};
 
 /// Removes a node and closes its links again: what it fed is linked to what fed it, to the first of its inputs (in the
 /// order of its kind) whose source has the very type, or else one that can be converted. Links that can't be closed
@@ -36,6 +37,18 @@ pub fn dissolve(graph: &Graph, catalogue: &Catalogue, id: NodeId) -> Result<Plan
                 let reason = format!("the link from \"{from}\" goes: nothing that fed \"{}\" fits here", node.name());
                 plan.remark(to, &outgoing.input, reason);
             }
+        }
+    }
+    for (name, output) in NodeRecord::promoted_of(graph, id) {
+        let wanted = output_wire(graph, &Link { node: id, output });
+        let same =
+            sources.iter().map(|(_, link)| *link).find(|link| wanted.is_some() && output_wire(graph, link) == wanted);
+        match (same, graph.output(&name)) {
+            (Some(link), Some(output)) => {
+                let output = Box::new(GraphOutput { from: OutputSource::Link(link.clone()), ..output.clone() });
+                plan.edits.push(Edit::ChangeOutput { name, output });
+            }
+            _ => plan.remark(node.name(), &name, format!("the graph's output \"{name}\" comes from nothing then")),
         }
     }
     Ok(plan)

@@ -1,4 +1,4 @@
-//! Plans of more than one edit: insert, replace, dissolve, duplicate, copy and paste.
+//! Plans of more than one edit: insert, replace, dissolve, duplicate, copy and paste, group and ungroup, promote.
 //!
 //! Each function looks at a graph without changing it and gives a [`Plan`]: edits to be made one step with
 //! [`crate::History::step`] (or [`Graph::apply_all`]), the nodes that come of it, and what can't be kept, to be told to
@@ -7,15 +7,21 @@
 
 mod dissolve;
 mod duplicate;
+mod group;
 mod insert;
+mod promote;
 mod replace;
 mod snippet;
+mod ungroup;
 
 pub use dissolve::dissolve;
 pub use duplicate::{Incoming, duplicate};
+pub use group::{GroupError, group};
 pub use insert::{InsertError, insert_into_link};
+pub use promote::{PromoteError, promote};
 pub use replace::replace_kind;
-pub use snippet::{PasteError, copy, paste};
+pub use snippet::{PasteError, copy, paste, paste_with};
+pub use ungroup::{UngroupError, ungroup};
 
 use std::fmt;
 

@@ -1,7 +1,9 @@
 //! A node of another kind in place of one.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
+use crate::body::{Body, GRAPH, Repeat};
 use crate::catalogue::Catalogue;
 use crate::edit::compound::{Plan, fit, input_wire, output_wire};
 use crate::edit::{Edit, NodeRecord};
@@ -19,14 +21,20 @@ use crate::port::InputSpec;
 /// The node is gone; the kind is unknown.
 pub fn replace_kind(graph: &Graph, catalogue: &Catalogue, id: NodeId, kind: &str) -> Result<Plan, GraphError> {
     let node = graph.node(id).ok_or(GraphError::NoSuchNode)?;
-    let known = Graph::known_kind(catalogue, kind)?;
+    let mut known = Graph::known_kind(catalogue, kind)?;
     let mut plan = Plan { nodes: vec![id], ..Plan::default() };
     let mut record = NodeRecord::of_node(node);
+    if let Some(body) = record.body.take() {
+        match body_for(&body, catalogue, &known) {
+            Ok((body, its_kind)) => (record.body, known) = (Some(body), its_kind),
+            Err(reason) => plan.remark(node.name(), "body", format!("the graph within is dropped: {reason}")),
+        }
+    }
     record.id = Some(id);
     kind.clone_into(&mut record.kind);
     record.placeholder = false;
     // A kind that could not be read is not what it is any more.
-    record.unknown_fields.retain(|(field, _)| field != "kind");
+    record.unknown_fields.retain(|(field, _)| field != "kind" && (field != "body" || !known.has_body()));
     let mut homeless = Vec::new();
     let mut kept = BTreeMap::new();
     for (input, source) in std::mem::take(&mut record.inputs) {
@@ -68,8 +76,31 @@ pub fn replace_kind(graph: &Graph, catalogue: &Catalogue, id: NodeId, kind: &str
         }
         record.outgoing.push(outgoing);
     }
+    for (name, output) in NodeRecord::promoted_of(graph, id) {
+        let wire = output_wire(graph, &Link { node: id, output: output.clone() });
+        let same = known.find_output(&output).map(|(_, spec)| spec);
+        match same.or_else(|| known.outputs().iter().find(|spec| Some(spec.wire) == wire)) {
+            Some(spec) => record.promoted.push((name, spec.name.clone())),
+            None => plan.remark(node.name(), &name, format!("the graph's output \"{name}\" comes from nothing then")),
+        }
+    }
     plan.edits = vec![Edit::RemoveNode(id), Edit::AddNode(Box::new(record))];
     Ok(plan)
+}
+
+/// The body as a node of another kind has it, and what that makes of the kind.
+fn body_for(body: &Body, catalogue: &Catalogue, kind: &NodeKind) -> Result<(Arc<Body>, Arc<NodeKind>), String> {
+    if !kind.has_body() {
+        return Err(format!("{} has none", kind.name()));
+    }
+    let repeat = match (kind.name(), body.repeat()) {
+        (GRAPH, _) => Repeat::Once,
+        (_, Repeat::Once) => Repeat::Times,
+        (_, other) => other.clone(),
+    };
+    let body = body.clone().repeated(repeat);
+    let kind = body.kind(catalogue, kind.name()).map_err(|error| error.to_string())?;
+    Ok((Arc::new(body), kind))
 }
 
 enum Refit {
@@ -96,6 +127,17 @@ fn refit(graph: &Graph, catalogue: &Catalogue, kind: &NodeKind, input: &str, sou
             }
             None => Refit::Fails(Some(link), no_input(kind)),
         },
+        Source::Parameter(name) => {
+            let wire = graph.parameter(&name).map(|parameter| parameter.wire());
+            match spec {
+                Some(spec) if fit(catalogue, wire, Some(spec.wire)).is_some() => Refit::Keeps(Source::Parameter(name)),
+                Some(spec) => {
+                    let message = format!("the parameter \"{name}\" no longer drives it: it takes {} here", spec.wire);
+                    Refit::Fails(None, message)
+                }
+                None => Refit::Fails(None, no_input(kind)),
+            }
+        }
         Source::Literal { literal, .. } => match spec {
             Some(spec) => literal_fits(spec, Source::literal(literal)),
             None => Refit::Fails(None, no_input(kind)),

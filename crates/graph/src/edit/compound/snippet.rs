@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::catalogue::Catalogue;
 use crate::edit::NodeRecord;
 use crate::edit::compound::{Plan, Remark, duplicate::add_all};
-use crate::file::{self, FileError, Spelled};
-use crate::graph::{Graph, GraphError, Link, NodeId, Source};
+use crate::file::{self, FileError, Includes, Spelled};
+use crate::graph::{Graph, GraphError, Link, Node, NodeId, Source};
 
 /// Why a text can't be pasted.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -19,8 +19,8 @@ pub enum PasteError {
     Empty,
 }
 
-/// Nodes as `.ron` text: a graph of its own in which links to nodes that are not copied stay by name. For the
-/// clipboard, a mail, or a file.
+/// Nodes as `.ron` text: a graph of its own in which links to nodes that are not copied stay by name, with the parameters
+/// that the nodes use. For the clipboard, a mail, or a file.
 ///
 /// # Errors
 /// A node is gone.
@@ -33,12 +33,28 @@ pub fn copy(graph: &Graph, nodes: &[NodeId]) -> Result<String, GraphError> {
 
 /// Adds the nodes of a text under fresh names, moved by `offset`. Links among them follow; a link to a node outside is
 /// kept if this graph has a node of that name that fits, or else dropped with a remark. Unknown kinds come as
-/// placeholders, and what could not be read stays as it is.
+/// placeholders, and what could not be read stays as it is. An input that holds a parameter keeps it if this graph has one
+/// of that name that fits, or else gets the parameter's value.
 ///
 /// # Errors
 /// The text is no graph, or has no nodes.
 pub fn paste(graph: &Graph, catalogue: &Catalogue, text: &str, offset: [f64; 2]) -> Result<Plan, PasteError> {
-    let source = file::from_text(catalogue, text)?.graph;
+    paste_with(graph, catalogue, text, offset, &Includes::none())
+}
+
+/// As [`paste`], for nodes whose bodies may be files; paths start at the folder of this graph. With [`paste`] such nodes
+/// come as placeholders that keep the name of the file.
+///
+/// # Errors
+/// As [`paste`].
+pub fn paste_with(
+    graph: &Graph,
+    catalogue: &Catalogue,
+    text: &str,
+    offset: [f64; 2],
+    includes: &Includes<'_>,
+) -> Result<Plan, PasteError> {
+    let source = file::from_text_with(catalogue, text, includes)?.graph;
     if source.nodes().len() == 0 {
         return Err(PasteError::Empty);
     }
@@ -50,9 +66,28 @@ pub fn paste(graph: &Graph, catalogue: &Catalogue, text: &str, offset: [f64; 2])
     for (index, (_, node)) in source.nodes().enumerate() {
         let mut record = NodeRecord::of_node(node);
         record.inputs.retain(|input, held| {
-            let Source::Unread(text) = held else { return true };
-            let Ok(Spelled::Link(address)) = file::parse(text) else { return true };
             let remark = |message| Remark { node: node.name().to_owned(), input: input.clone(), message };
+            let spelled = match held {
+                Source::Unread(text) => file::parse(text).ok(),
+                Source::Parameter(name) => Some(Spelled::Parameter(name.clone())),
+                Source::Literal { .. } | Source::Link(_) => None,
+            };
+            let address = match spelled {
+                Some(Spelled::Link(address)) => address,
+                Some(Spelled::Parameter(name)) => {
+                    return match parameter(graph, catalogue, &source, node, input, &name) {
+                        Ok(found) => {
+                            *held = found;
+                            true
+                        }
+                        Err(reason) => {
+                            remarks.push(remark(format!("the parameter \"{name}\" goes: {reason}")));
+                            false
+                        }
+                    };
+                }
+                Some(Spelled::Literal(_)) | None => return true,
+            };
             match resolve(
                 graph,
                 catalogue,
@@ -85,6 +120,32 @@ pub fn paste(graph: &Graph, catalogue: &Catalogue, text: &str, offset: [f64; 2])
     }
     plan.remarks = remarks;
     Ok(plan)
+}
+
+/// What an input of a snippet that holds a parameter is to hold here, or why nothing.
+fn parameter(
+    graph: &Graph,
+    catalogue: &Catalogue,
+    snippet: &Graph,
+    node: &Node,
+    input: &str,
+    name: &str,
+) -> Result<Source, String> {
+    let spec = match node.kind() {
+        Some(kind) => Some(kind.find_input(input).ok_or_else(|| format!("{} has no such input", kind.name()))?),
+        None => None,
+    };
+    let fits = |wire| spec.is_none_or(|spec| catalogue.fits(wire, spec.wire));
+    if graph.parameter(name).is_some_and(|parameter| fits(parameter.wire())) {
+        return Ok(Source::Parameter(name.to_owned()));
+    }
+    let value = snippet.parameter(name).and_then(|parameter| parameter.value());
+    let value = value.ok_or("this graph has none of that name that fits, and it holds no value")?;
+    match spec.map(|spec| (spec.refuses(value), spec.normal(value.clone()))) {
+        Some((Some(reason), _)) => Err(reason),
+        Some((None, value)) => Ok(Source::literal(value)),
+        None => Ok(Source::literal(value.clone())),
+    }
 }
 
 /// The output of this graph that an address of a snippet means, or why there is none.
