@@ -250,7 +250,7 @@ fn parts_and_what_they_read_are_followed() {
     put("line.ron", &part.replace("resample", "resampel"));
     let complaints = [watch.complaint(), watch.complaint()];
     assert!(complaints[0].contains("\"line\" gives nothing at \"curves\""), "{complaints:?}");
-    assert!(complaints[1].contains("parts/line.ron:6:19: error: node \"even\": the node kind"), "{complaints:?}");
+    assert!(complaints[1].contains("parts/line.ron:11:19: error: node \"even\": the node kind"), "{complaints:?}");
     put("line.ron", &part.replace("\"count\": 16", "\"count\": 24"));
     let line = watch.next();
     assert!(line.starts_with("ran 2 (line, lines), 0 hits, "), "{line}");
