@@ -1,6 +1,6 @@
 //! The headless command of Maquette. Exit codes: 0 done, 1 a node failed, a --fail-if limit was exceeded, what was
-//! compared differs or a wedge was stopped, 2 the graph or the arguments are wrong, 3 a result could not be written, or
-//! the program broke down.
+//! compared differs, a graph is of an earlier version or a wedge was stopped, 2 the graph or the arguments are wrong, 3 a
+//! result could not be written, or the program broke down.
 
 use std::process::ExitCode;
 
@@ -9,8 +9,9 @@ use maquette::commands::{self, Ended};
 
 /// Evaluates procedural modelling graphs: sketched curves in, models out.
 ///
-/// Exit codes: 0 done, 1 a node failed, a --fail-if limit was exceeded, what was compared differs or a wedge was
-/// stopped, 2 the graph or the arguments are wrong, 3 a result could not be written, or the program broke down.
+/// Exit codes: 0 done, 1 a node failed, a --fail-if limit was exceeded, what was compared differs, a graph is of
+/// an earlier version or a wedge was stopped, 2 the graph or the arguments are wrong, 3 a result could not be written, or
+/// the program broke down.
 #[derive(Parser)]
 #[command(version, about, long_about, max_term_width = 110)]
 struct Arguments {

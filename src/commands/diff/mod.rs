@@ -144,11 +144,12 @@ fn compare(
     second: &Path,
     base: Option<&Path>,
 ) -> Result<Comparison, Vec<String>> {
-    let (a, b) =
-        match (open(catalogue, first, base, &arguments.project), open(catalogue, second, base, &arguments.project)) {
-            (Ok(a), Ok(b)) => (a, b),
-            (a, b) => return Err([a.err(), b.err()].into_iter().flatten().flatten().collect()),
-        };
+    // Reading is most of the work where graphs are large.
+    let read = |path: &Path| open(catalogue, path, base, &arguments.project);
+    let (a, b) = match rayon::join(|| read(first), || read(second)) {
+        (Ok(a), Ok(b)) => (a, b),
+        (a, b) => return Err([a.err(), b.err()].into_iter().flatten().flatten().collect()),
+    };
     let pairing = pair(&a.loaded.graph, &b.loaded.graph);
     let differences = differences(&a.loaded.graph, &b.loaded.graph, &pairing, arguments.layout);
     let outputs = if arguments.geometry { compare_results(catalogue, [&a, &b], &pairing)? } else { Vec::new() };
