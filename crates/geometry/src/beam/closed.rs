@@ -59,7 +59,7 @@ impl ClosedBeam {
             .map(|pin| {
                 let mut unit = vec![0.0; self.pins.len()];
                 unit[pin] = 1.0;
-                self.solve_banded(&unit)
+                self.solve_banded(&unit, &[])
             })
             .collect()
     }
@@ -72,7 +72,7 @@ impl ClosedBeam {
     pub fn solve<T: Quantity>(&self, values: &[T]) -> Result<Vec<T>, BeamError> {
         check_values("pin values", values, self.pins.len())?;
         if self.cardinals.is_empty() {
-            return self.solve_banded(values);
+            return self.solve_banded(values, &[]);
         }
         // Relative to the first pin, so that a beam whose pins coincide stays a point exactly.
         let origin = values[0];
@@ -89,6 +89,17 @@ impl ClosedBeam {
         if curve.iter().all(|point| point.finite()) { Ok(curve) } else { Err(BeamError::NotSolvable) }
     }
 
+    /// The curve through `values`, one a pin, pushed by `forces` of the differential equation, one a node; those at pins
+    /// are not used.
+    ///
+    /// # Errors
+    /// [`BeamError`] where a list has the wrong length, or a value is not finite.
+    pub fn solve_with_forces<T: Quantity>(&self, values: &[T], forces: &[T]) -> Result<Vec<T>, BeamError> {
+        check_values("pin values", values, self.pins.len())?;
+        check_values("forces", forces, self.nodes())?;
+        self.solve_banded(values, forces)
+    }
+
     /// The force of the differential equation at each pin that holds `curve` (a solution, one value a node) there;
     /// the pin's point load is `h` times it. All of them add up to zero. Digits are lost with the fourth power of
     /// the number of nodes: about 1e-11 of the largest at 100 nodes, 1e-8 at 500.
@@ -100,12 +111,13 @@ impl ClosedBeam {
         Ok(self.system.force(curve, [T::default(); 2], &self.pins))
     }
 
-    fn solve_banded<T: Quantity>(&self, values: &[T]) -> Result<Vec<T>, BeamError> {
+    fn solve_banded<T: Quantity>(&self, values: &[T], forces: &[T]) -> Result<Vec<T>, BeamError> {
         let mut curve = vec![values[0]; self.nodes()];
         for (pin, value) in self.pins.iter().zip(values) {
             curve[*pin] = *value;
         }
-        self.system.solve(&mut curve, Drive { tangents: [T::default(); 2], forces: &[] })?;
+        let none = [T::default(); 2];
+        self.system.solve(&mut curve, Drive { tangents: none, loads: none, forces })?;
         Ok(curve)
     }
 }

@@ -20,6 +20,21 @@ pub enum BeamError {
     /// A closed beam without a pin could lie anywhere.
     #[error("a closed beam needs at least one pin: without one its position is not determined")]
     NoPin,
+    /// An open beam with two free ends and no pin could lie anywhere.
+    #[error("both ends are free and no node is pinned, so that the beam could lie anywhere: pin a node or hold an end")]
+    NotHeld,
+    /// An open beam that turns about the only point that holds it.
+    #[error(
+        "without stretching stiffness the beam turns freely about the one node that holds it: pin another node, clamp \
+         an end, or give a k_s above 0"
+    )]
+    Turns,
+    /// Parameters that do not increase.
+    #[error("parameter {index} does not come behind the one before it, or lies outside 0 to 1: sort them")]
+    Unordered {
+        /// Index of the parameter in the list.
+        index: usize,
+    },
     /// A pin outside the nodes that can be pinned.
     #[error("pin {pin} is at node {node}, and pins may stand at nodes {first} to {last}: move it there")]
     PinOutOfRange {

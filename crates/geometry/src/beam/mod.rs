@@ -5,24 +5,31 @@
 //! `f` is the force of the differential equation: positive `f` pushes towards positive `d`. Every solver factors
 //! once, for its nodes, pins and stiffness, and then solves for any values in O(n). The scheme (thesis 5.8, with the
 //! right side `h^4 f`) is of second order in `h`; its linear system is solved to round-off for any permitted size.
+//!
+//! [`ClosedBeam`] and [`OpenBeam`] stand on one system of equations: pins, and ends that are clamped, natural or free.
+//! [`OpenCardinals`] are the functions of which all their curves are sums; [`TensionSpline`] is the exact solution.
 
 mod banded;
+mod cardinals;
 mod closed;
 pub mod closed_form;
+#[cfg(test)]
+mod difference_tests;
 mod error;
-mod hermite;
 mod open;
 mod quantity;
 mod stiffness;
 mod system;
+mod tension_spline;
 
 pub(crate) use banded::BandedFactor;
+pub use cardinals::OpenCardinals;
 pub use closed::ClosedBeam;
 pub use error::BeamError;
-pub use hermite::HermiteBasis;
-pub use open::{EndCondition, OpenBeam, OpenValues, sculpting_forces};
+pub use open::{EndCondition, EndReaction, OpenBeam, OpenValues, sculpting_forces};
 pub use quantity::Quantity;
 pub use stiffness::{Stiffness, StiffnessError};
+pub use tension_spline::{SplineEnd, TensionSpline};
 
 /// Most nodes of a beam: beyond it the difference equations lose their digits faster than refinement restores them.
 pub const MOST_NODES: usize = 8192;

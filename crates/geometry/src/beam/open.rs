@@ -5,37 +5,45 @@ use super::quantity::Quantity;
 use super::stiffness::Stiffness;
 use super::system::{Closure, Drive, System, check_nodes_and_pins, check_values};
 
-/// How an end of an open beam is held. Its position is always prescribed.
+/// How an end of an open beam is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EndCondition {
-    /// The tangent `dP/du` is prescribed too.
+    /// Position and tangent `dP/du` are prescribed.
     Clamped,
-    /// The end turns freely: zero moment, `d'' = 0`.
+    /// The position is prescribed, and the end turns freely: zero moment, `d'' = 0`.
     Natural,
+    /// Nothing is prescribed; a load `F` may push the end: `d'' = 0` and `k_b d''' - k_s d' = -F` at the right end,
+    /// `+F` at the left one (beam theory; the thesis' `d''' = f/k_b` leaves out the moment and `k_s`).
+    Free,
 }
 
-/// An open beam of `n` nodes at `u = i/(n - 1)`, held at both ends and at any pins between them (thesis 5.5-5.8,
+/// An open beam of `n` nodes at `u = i/(n - 1)`, held at its ends and at any pins between them (thesis 5.5-5.8,
 /// appendices C and D for any pins). Second order in `1/n`.
 #[derive(Clone, Debug)]
 pub struct OpenBeam {
     system: System,
+    ends: [EndCondition; 2],
     pins: Vec<usize>,
 }
 
 /// What one solve of an [`OpenBeam`] is given.
 #[derive(Clone, Copy, Debug)]
 pub struct OpenValues<'a, T> {
-    /// Position of the left end.
+    /// Position of the left end; not used where that end is free.
     pub left: T,
-    /// Position of the right end.
+    /// Position of the right end; not used where that end is free.
     pub right: T,
-    /// `dP/du` at the left end; not used where that end is natural.
+    /// `dP/du` at the left end; used only where that end is clamped.
     pub left_tangent: T,
-    /// `dP/du` at the right end (pointing on along the curve); not used where that end is natural.
+    /// `dP/du` at the right end (pointing on along the curve); used only where that end is clamped.
     pub right_tangent: T,
+    /// Point load on the left end; used only where that end is free.
+    pub left_load: T,
+    /// Point load on the right end; used only where that end is free.
+    pub right_load: T,
     /// One value a pin, in the order of the pins.
     pub pins: &'a [T],
-    /// Force of the differential equation at each node, or empty for none; not used at the ends and at pins.
+    /// Force of the differential equation at each node, or empty for none; not used at held ends and at pins.
     pub forces: &'a [T],
 }
 
@@ -43,8 +51,33 @@ impl<T: Quantity> OpenValues<'_, T> {
     /// The values of a beam between two ends at rest: zero tangents, no pins, no forces.
     pub fn ends(left: T, right: T) -> Self {
         let zero = T::default();
-        Self { left, right, left_tangent: zero, right_tangent: zero, pins: &[], forces: &[] }
+        Self {
+            left,
+            right,
+            left_tangent: zero,
+            right_tangent: zero,
+            left_load: zero,
+            right_load: zero,
+            pins: &[],
+            forces: &[],
+        }
     }
+
+    fn check(&self, nodes: usize, pins: usize) -> Result<(), BeamError> {
+        let ends = [self.left, self.right, self.left_tangent, self.right_tangent, self.left_load, self.right_load];
+        check_values("ends, end tangents and end loads", &ends, ends.len())?;
+        check_values("pin values", self.pins, pins)?;
+        if self.forces.is_empty() { Ok(()) } else { check_values("forces", self.forces, nodes) }
+    }
+}
+
+/// What holds an end of an open beam where it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EndReaction<T> {
+    /// Point load that pushes the end: positive towards positive `d`.
+    pub load: T,
+    /// Moment that turns the end: positive towards a larger `dP/du`. Zero but at a clamped end.
+    pub moment: T,
 }
 
 impl OpenBeam {
@@ -52,7 +85,8 @@ impl OpenBeam {
     ///
     /// # Errors
     /// [`BeamError`] for fewer than 4 or more than [`super::MOST_NODES`] nodes, a pin at an end, out of range or
-    /// twice.
+    /// twice, and where nothing fixes the solution: two free ends without a pin, or, with `k_s = 0`, one held point
+    /// about which the beam turns.
     pub fn new(
         nodes: usize,
         pins: &[usize],
@@ -62,9 +96,15 @@ impl OpenBeam {
     ) -> Result<Self, BeamError> {
         check_nodes_and_pins(nodes, 4, pins, 1..=nodes.saturating_sub(2))?;
         let mut fixed = pins.to_vec();
-        fixed.extend([0, nodes - 1]);
+        fixed.extend([(left, 0), (right, nodes - 1)].iter().filter(|end| end.0 != EndCondition::Free).map(|end| end.1));
+        if fixed.is_empty() {
+            return Err(BeamError::NotHeld);
+        }
+        if fixed.len() == 1 && stiffness.ratio() == 0.0 && ![left, right].contains(&EndCondition::Clamped) {
+            return Err(BeamError::Turns);
+        }
         let system = System::new(nodes, &fixed, Closure::Open(left, right), stiffness)?;
-        Ok(Self { system, pins: pins.to_vec() })
+        Ok(Self { system, ends: [left, right], pins: pins.to_vec() })
     }
 
     /// Number of nodes, ends included.
@@ -77,25 +117,30 @@ impl OpenBeam {
         &self.pins
     }
 
-    /// The curve with these ends, pins and forces: one value a node. Ends and pins hold their values exactly.
+    /// The curve with these ends, pins, loads and forces: one value a node. Held ends and pins hold their values
+    /// exactly.
     ///
     /// # Errors
     /// [`BeamError`] where a list has the wrong length, or a value is not finite.
     pub fn solve<T: Quantity>(&self, values: &OpenValues<'_, T>) -> Result<Vec<T>, BeamError> {
-        check_values("ends and end tangents", &values.ends_and_tangents(), 4)?;
-        check_values("pin values", values.pins, self.pins.len())?;
-        if !values.forces.is_empty() {
-            check_values("forces", values.forces, self.nodes())?;
-        }
+        values.check(self.nodes(), self.pins.len())?;
         let last = self.nodes() - 1;
-        let chord = values.right - values.left;
-        let mut curve: Vec<T> = (0..=last).map(|i| values.left + chord * (i as f64 / last as f64)).collect();
-        curve[last] = values.right;
+        // The first guess stays near what is held.
+        let [left, right] = match self.ends.map(|end| end == EndCondition::Free) {
+            [false, false] => [values.left, values.right],
+            [false, true] => [values.left; 2],
+            [true, false] => [values.right; 2],
+            [true, true] => [values.pins.first().copied().unwrap_or_default(); 2],
+        };
+        let chord = right - left;
+        let mut curve: Vec<T> = (0..=last).map(|i| left + chord * (i as f64 / last as f64)).collect();
+        curve[last] = right;
         for (pin, value) in self.pins.iter().zip(values.pins) {
             curve[*pin] = *value;
         }
         let tangents = [values.left_tangent, values.right_tangent];
-        self.system.solve(&mut curve, Drive { tangents, forces: values.forces })?;
+        let loads = [values.left_load, values.right_load];
+        self.system.solve(&mut curve, Drive { tangents, loads, forces: values.forces })?;
         Ok(curve)
     }
 
@@ -109,11 +154,17 @@ impl OpenBeam {
         check_values("end tangents", &tangents, 2)?;
         Ok(self.system.force(curve, tangents, &self.pins))
     }
-}
 
-impl<T: Quantity> OpenValues<'_, T> {
-    fn ends_and_tangents(&self) -> [T; 4] {
-        [self.left, self.right, self.left_tangent, self.right_tangent]
+    /// What holds both ends of `curve` (a solution, one value a node) where they are, the left one first. With these,
+    /// `h` times the reactions at pins and `h` times the forces at inner nodes, all loads add up to zero; a free end
+    /// counts its load and half an interval of the force on it. Digits are lost with the third power of the nodes.
+    ///
+    /// # Errors
+    /// [`BeamError`] where the number of values is not that of the nodes, or one is not finite.
+    pub fn end_reactions<T: Quantity>(&self, curve: &[T], tangents: [T; 2]) -> Result<[EndReaction<T>; 2], BeamError> {
+        check_values("curve values", curve, self.nodes())?;
+        check_values("end tangents", &tangents, 2)?;
+        Ok(self.system.end_reactions(curve, tangents).map(|(load, moment)| EndReaction { load, moment }))
     }
 }
 
@@ -153,8 +204,7 @@ mod tests {
 
     #[test]
     fn end_tangents_and_a_pin_reference() {
-        let values =
-            OpenValues { left: 0.2, right: -0.3, left_tangent: 1.5, right_tangent: -0.5, pins: &[0.8], forces: &[] };
+        let values = OpenValues { left_tangent: 1.5, right_tangent: -0.5, pins: &[0.8], ..OpenValues::ends(0.2, -0.3) };
         let wanted = [
             0.2,
             0.4244581284767,
@@ -231,12 +281,10 @@ mod tests {
             let (t0, t1) = (DVec2::new(0.3, 2.0), DVec2::new(-1.0, 4.0));
             let forces = sculpting_forces(&nodes, t0, t1, Stiffness::default()).unwrap();
             let values = OpenValues {
-                left: nodes[0],
-                right: nodes[intervals],
                 left_tangent: t0,
                 right_tangent: t1,
-                pins: &[],
                 forces: &forces,
+                ..OpenValues::ends(nodes[0], nodes[intervals])
             };
             let curve = beam(intervals + 1, &[], Clamped, Clamped).solve(&values).unwrap();
             let error = curve.iter().zip(&nodes).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
@@ -281,12 +329,10 @@ mod tests {
                     let values: Vec<f64> = pins.iter().map(|p| line(*p)).collect();
                     let solved = beam
                         .solve(&OpenValues {
-                            left: 2.0,
-                            right: -3.0,
                             left_tangent: -5.0,
                             right_tangent: -5.0,
                             pins: &values,
-                            forces: &[],
+                            ..OpenValues::ends(2.0, -3.0)
                         })
                         .unwrap();
                     for (i, d) in solved.iter().enumerate() {

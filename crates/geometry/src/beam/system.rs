@@ -22,23 +22,28 @@ pub(super) struct System {
     stiffness: Stiffness,
     closure: Closure,
     step: f64,
-    /// Nodes that are not fixed, in the order of elimination.
+    /// Nodes that are not fixed, in the order of elimination; free ends among them.
     free: Vec<usize>,
     factor: BandedFactor,
     nodes: usize,
 }
+
+/// Share of the values by which the last correction may still change them.
+const UNSETTLED: f64 = 1e-6;
 
 /// What holds and drives the beam in one solve.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Drive<'a, T> {
     /// `dP/du` at the left and right end, used where that end is clamped.
     pub(super) tangents: [T; 2],
+    /// Load on the left and right end, used where that end is free.
+    pub(super) loads: [T; 2],
     /// Force at each node, or empty for none.
     pub(super) forces: &'a [T],
 }
 
 impl System {
-    /// Assembles and factors. `fixed` are distinct nodes in range; both ends of an open beam are among them.
+    /// Assembles and factors. `fixed` are distinct nodes in range; the ends of an open beam are among them unless free.
     pub(super) fn new(
         nodes: usize,
         fixed: &[usize],
@@ -63,8 +68,12 @@ impl System {
             let (a, b) = (free[row], free[column]);
             let apart = a.abs_diff(b);
             let apart = if closure == Closure::Cyclic { apart.min(nodes - apart) } else { apart };
+            // An end that is not fixed is free: its equation is that of the forces on the last half interval.
+            let at_end = matches!(closure, Closure::Open(..)) && [a, b].iter().any(|k| *k == 0 || *k + 1 == nodes);
             match apart {
+                0 if at_end => 1.0 + tension,
                 0 => 6.0 + 2.0 * tension + ghost_share(closure, nodes, a),
+                1 if at_end => -2.0 - tension,
                 1 => -4.0 - tension,
                 2 => 1.0,
                 _ => 0.0,
@@ -87,25 +96,62 @@ impl System {
         let scale = self.step.powi(4) / self.stiffness.bending();
         let mut bends = Vec::with_capacity(self.nodes);
         let mut correction = Vec::with_capacity(self.free.len());
+        let (mut settled, mut size, mut change) = (false, 0.0_f64, 0.0_f64);
         for _ in 0..8 {
             self.bends(values, drive.tangents, &mut bends);
             correction.clear();
             for node in &self.free {
-                let load = drive.forces.get(*node).map_or_else(T::default, |force| *force * scale);
-                correction.push(load - self.stencil(&bends, *node));
+                let force = drive.forces.get(*node).map_or_else(T::default, |force| *force * scale);
+                correction.push(match self.end_at(*node) {
+                    None => force - self.stencil(&bends, *node),
+                    // A free end carries its load and half an interval's share of the force.
+                    Some(end) => {
+                        force * 0.5 + drive.loads[end] * (scale / self.step) - self.end_stencil(&bends, values, end)
+                    }
+                });
             }
             self.factor.solve(&mut correction);
-            let mut change = 0.0_f64;
+            change = 0.0;
             for (node, correction) in self.free.iter().zip(&correction) {
                 values[*node] = values[*node] + *correction;
                 change = change.max(correction.largest());
             }
-            let size = values.iter().fold(0.0_f64, |size, value| size.max(value.largest()));
+            size = values.iter().fold(0.0_f64, |size, value| size.max(value.largest()));
             if change <= 2.0 * f64::EPSILON * size {
+                settled = true;
                 break;
             }
         }
-        if values.iter().all(|value| value.finite()) { Ok(()) } else { Err(BeamError::NotSolvable) }
+        // Corrections that do not shrink tell of a beam that next to nothing holds.
+        settled |= change <= UNSETTLED * size;
+        if settled && values.iter().all(|value| value.finite()) { Ok(()) } else { Err(BeamError::NotSolvable) }
+    }
+
+    /// Which end a node is, 0 or 1, where the beam is open.
+    fn end_at(&self, node: usize) -> Option<usize> {
+        match self.closure {
+            Closure::Cyclic => None,
+            Closure::Open(..) if node == 0 => Some(0),
+            Closure::Open(..) => (node + 1 == self.nodes).then_some(1),
+        }
+    }
+
+    /// What holds the ends of an open beam where they are: the point load and the moment at each.
+    pub(super) fn end_reactions<T: Quantity>(&self, values: &[T], tangents: [T; 2]) -> [(T, T); 2] {
+        let mut bends = Vec::with_capacity(self.nodes);
+        self.bends(values, tangents, &mut bends);
+        let k_b = self.stiffness.bending();
+        [(0, 0, -1.0), (1, self.nodes - 1, 1.0)].map(|(end, node, sign)| {
+            let load = self.end_stencil(&bends, values, end) * (k_b / self.step.powi(3));
+            (load, bends[node] * (sign * k_b / (self.step * self.step)))
+        })
+    }
+
+    /// Left side of the equation of forces on the last half interval at an end, for `k_b = 1` and times `h^3`.
+    fn end_stencil<T: Quantity>(&self, bends: &[T], values: &[T], end: usize) -> T {
+        let (here, inner) = if end == 0 { (0, 1) } else { (self.nodes - 1, self.nodes - 2) };
+        let tension = self.stiffness.ratio() * self.step * self.step;
+        (bends[inner] - bends[here]) + (values[here] - values[inner]) * tension
     }
 
     /// Force of the differential equation that holds `node` where it is: the left side of thesis 5.5 in differences.
@@ -120,10 +166,10 @@ impl System {
     fn bends<T: Quantity>(&self, values: &[T], tangents: [T; 2], bends: &mut Vec<T>) {
         let last = self.nodes - 1;
         let bend = |before: T, here: T, after: T| (after - here) - (here - before);
-        // d_{-1} = d_1 - 2 h T at a clamped end, and zero moment at a natural one.
+        // d_{-1} = d_1 - 2 h T at a clamped end, and zero moment at a natural or free one.
         let end = |condition, here: T, inner: T, outward: T| match condition {
             EndCondition::Clamped => ((inner - here) + outward * self.step) * 2.0,
-            EndCondition::Natural => T::default(),
+            EndCondition::Natural | EndCondition::Free => T::default(),
         };
         let (first_bend, last_bend) = match self.closure {
             Closure::Cyclic => {
@@ -154,7 +200,7 @@ impl System {
 fn ghost_share(closure: Closure, nodes: usize, node: usize) -> f64 {
     let share = |condition| match condition {
         EndCondition::Clamped => 1.0,
-        EndCondition::Natural => -1.0,
+        EndCondition::Natural | EndCondition::Free => -1.0,
     };
     match closure {
         Closure::Cyclic => 0.0,

@@ -1,28 +1,22 @@
-//! Rails between two closed curves.
+//! Rails between closed curves.
 
-use glam::DVec3;
-
-use super::feet::{Feet, Side};
-use super::pace::Pace;
-use super::patch::blend_generators;
-use super::turning::Turning;
-use super::{Frame, GenerateError, GenerateOptions, Generated, Weights, check_size, report};
-use crate::beam::HermiteBasis;
-use crate::curve::{ArcLength, Curve};
-use crate::sections::Sections;
+use super::neighbour::Neighbour;
+use super::sweep::{Drawing, sweep};
+use super::{GenerateError, GenerateOptions, Generated};
+use crate::curve::Curve;
 
 /// A tube between two closed curves that follows the rails drawn between them (thesis 6.3 with a second closed curve,
 /// Figures 6.8, 6.9).
 ///
 /// `rails` are two or more open curves in counter-clockwise order, each from `start` to `end`; the closed curves run
 /// counter-clockwise too. The feet of the rails cut both into pieces. A generator at the share `s` of the way between
-/// two rails runs from a point of the piece of `start` to one of the piece of `end`. Its weight is [`Weights::at`] of
+/// two rails runs from a point of the piece of `start` to one of the piece of `end`. Its weight is [`Weights::at`](super::Weights::at) of
 /// `s`; smooth weights also walk the closed curves at a speed that does not jump at the feet, so that the surface does
 /// not crease along the rails; linear weights use plain shares of the arc length between two feet, as printed.
 ///
 /// In the thesis the generator is the beam curve bent by the blended sculpting forces of both rails
-/// ([`blend_generators`], [`Frame::Fixed`]). Forces of rails a quarter of a turn apart partly cancel: of a round belly
-/// drawn by four rails 0.71 are left between them. [`Frame::Turning`] turns what the rails add to the loft between the
+/// ([`blend_generators`](super::blend_generators), [`Frame::Fixed`](super::Frame::Fixed)). Forces of rails a quarter of a turn apart partly cancel: of a round belly
+/// drawn by four rails 0.71 are left between them. [`Frame::Turning`](super::Frame::Turning) turns what the rails add to the loft between the
 /// closed curves about the axis as these turn, apart from a shift that all rails share: surfaces of revolution and tubes
 /// bent sideways stay round. The axis goes over from the normal of the one to that of the other closed curve. Where a
 /// closed curve turns back by more than 3 degrees as seen from its centre, both enclose next to no area, or they face
@@ -46,188 +40,53 @@ pub fn between_closed(
     options: &GenerateOptions,
     progress: &dyn Fn(f64) -> bool,
 ) -> Result<Generated, GenerateError> {
-    options.check(4)?;
-    check_size(rails.iter().chain([start, end]))?;
-    if rails.len() < 2 {
-        return Err(GenerateError::TooFewRails { found: rails.len() });
-    }
-    if let Some((rail, curve)) = rails.iter().enumerate().find(|(_, curve)| curve.is_closed()) {
-        return Err(GenerateError::RailIsClosed { rail, name: curve.name().to_owned() });
-    }
-    for (curve, side) in [(start, Side::Start), (end, Side::End)] {
-        if !curve.is_closed() {
-            return Err(GenerateError::CurveIsOpen { which: side.name(), name: curve.name().to_owned() });
-        }
-    }
-    let bottom = Feet::find(rails, start, end, Side::Start, options)?;
-    let top = Feet::find(rails, end, start, Side::End, options)?;
-    if rails.len() == 2 && opposed(rails, start, end) {
-        return Err(GenerateError::CurveIsReversed { which: Side::End.name(), curve: end.name().to_owned() });
-    }
-
-    let mut notes = Vec::new();
-    let intervals = share_out(options.nodes, &bottom.offsets, &top.offsets, &mut notes);
-    let nodes: usize = intervals.iter().sum();
-    if nodes > options.nodes {
-        GenerateOptions { nodes, ..*options }.check(4)?;
-    }
-    let basis = HermiteBasis::new(options.sections, options.stiffness)?;
-    let sampled: Vec<Vec<DVec3>> = rails.iter().map(|rail| sample(rail, options.sections)).collect();
-    let (on_start, on_end) = (Walk::new(start, &bottom, &top, options), Walk::new(end, &top, &bottom, options));
-
-    let turning = match options.frame {
-        Frame::Turning => {
-            let offsets = [bottom.offsets.as_slice(), top.offsets.as_slice()];
-            Turning::new([start, end], [bottom.origin, top.origin], offsets, &sampled, &basis)
-                .map_err(|why| {
-                    notes.push(format!(
-                        "The frame stays fixed between the rails, and the shape may flatten there: {why}."
-                    ))
-                })
-                .ok()
-        }
-        Frame::Fixed => None,
+    let drawing = Drawing {
+        rails,
+        profiles: vec![start, end],
+        closed: true,
+        apex: false,
+        neighbours: [None, None],
+        sides: [None, None],
     };
-
-    let mut rows = vec![Vec::with_capacity(nodes); options.sections];
-    let mut columns = Vec::with_capacity(rails.len());
-    for (patch, count) in intervals.iter().enumerate() {
-        columns.push(rows[0].len());
-        let next = (patch + 1) % rails.len();
-        for node in 0..*count {
-            report(progress, rows[0].len(), nodes)?;
-            let share = node as f64 / *count as f64;
-            let ends = (on_start.point(patch, share), on_end.point(patch, share));
-            let weight = options.weights.at(share);
-            let generator = match &turning {
-                Some(turning) => {
-                    let offsets = [on_start.offset(patch, share), on_end.offset(patch, share)];
-                    turning.generator(patch, weight, offsets, ends, &basis)
-                }
-                None => blend_generators(&sampled[patch], &sampled[next], weight, ends, &basis),
-            };
-            for (row, point) in rows.iter_mut().zip(generator) {
-                row.push(point);
-            }
-        }
-    }
-    report(progress, 1, 1)?;
-    let gaps: Vec<[f64; 2]> = bottom.gaps.iter().zip(&top.gaps).map(|(start, end)| [*start, *end]).collect();
-    let largest_gap = gaps.iter().flatten().copied().fold(0.0, f64::max);
-    let warnings = gap_warning(rails.iter().chain([start, end]), largest_gap, options.snap).into_iter().collect();
-    Ok(Generated { sections: Sections::new(rows, true, columns)?, notes, warnings, largest_gap, gaps })
+    sweep(&drawing, options, progress)
 }
 
-/// Share of the size of all curves above which a gap is worth a warning. Our own choice: on a vest
-/// 60 cm high it is 1.4 cm, where the rail visibly leaves the shape that was drawn.
-const LARGE_GAP: f64 = 0.02;
-
-/// What to say of a gap that is large for the shape.
-fn gap_warning<'a>(curves: impl Iterator<Item = &'a Curve>, gap: f64, snap: f64) -> Option<String> {
-    let (low, high) = curves.map(Curve::bounds).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
-    let size = (high - low).length();
-    (gap > LARGE_GAP * size).then(|| {
-        format!(
-            "A rail was bent by {gap:.4} m to reach its closed curve, within the snap of {snap} m but more than 2 % of \
-             the shape's size of {size:.4} m: draw it up to the curve, or lower the snap."
-        )
-    })
-}
-
-/// How a closed curve is walked from foot to foot.
-struct Walk<'a> {
-    arc: ArcLength<'a>,
-    feet: &'a Feet,
-    /// None for plain shares of the arc length.
-    pace: Option<Pace>,
-}
-
-impl<'a> Walk<'a> {
-    fn new(curve: &'a Curve, feet: &'a Feet, opposite: &Feet, options: &GenerateOptions) -> Self {
-        let pace = (options.weights == Weights::Smooth).then(|| {
-            let parameters = mean_offsets(&feet.offsets, &opposite.offsets);
-            Pace::new(parameters, feet.offsets.clone())
-        });
-        Self { arc: ArcLength::of(curve), feet, pace }
-    }
-
-    /// The point at the share `t` of the way from foot `patch` to the next one.
-    fn point(&self, patch: usize, t: f64) -> DVec3 {
-        if t == 0.0 {
-            return self.feet.points[patch];
-        }
-        self.arc.point_at(self.feet.origin + self.offset(patch, t))
-    }
-
-    /// Arc length of that point behind the first foot, metres.
-    fn offset(&self, patch: usize, t: f64) -> f64 {
-        match &self.pace {
-            Some(pace) => pace.at(patch, t),
-            None => self.feet.offsets[patch] * (1.0 - t) + self.feet.offsets[patch + 1] * t,
-        }
-    }
-}
-
-/// Offsets of the feet as shares of the whole, in the mean of both curves.
-fn mean_offsets(one: &[f64], other: &[f64]) -> Vec<f64> {
-    let whole = |offsets: &[f64]| offsets[offsets.len() - 1];
-    let (length, other_length) = (whole(one), whole(other));
-    one.iter().zip(other).map(|(a, b)| 0.5 * (a / length + b / other_length)).collect()
-}
-
-/// `nodes` intervals shared out among the patches by the mean length of their pieces, at least two each.
-fn share_out(nodes: usize, bottom: &[f64], top: &[f64], notes: &mut Vec<String>) -> Vec<usize> {
-    let lengths: Vec<f64> =
-        bottom.windows(2).zip(top.windows(2)).map(|(b, t)| 0.5 * ((b[1] - b[0]) + (t[1] - t[0]))).collect();
-    let whole: f64 = lengths.iter().sum();
-    let mut intervals = vec![2; lengths.len()];
-    let least = 2 * intervals.len();
-    if nodes < least {
-        notes.push(format!(
-            "{nodes} points a section are too few for {} rails: {least} are used, two from rail to rail.",
-            intervals.len()
-        ));
-    }
-    for _ in least..nodes {
-        // The patch that lacks most of its share; the first one where several do, so that the result is the same on
-        // every run.
-        let mut most = (0, f64::NEG_INFINITY);
-        for (patch, (length, count)) in lengths.iter().zip(&intervals).enumerate() {
-            let lacks = nodes as f64 * length / whole - *count as f64;
-            if lacks > most.1 {
-                most = (patch, lacks);
-            }
-        }
-        intervals[most.0] += 1;
-    }
-    intervals
-}
-
-/// Points at equal arc length, both ends exactly.
-fn sample(rail: &Curve, count: usize) -> Vec<DVec3> {
-    let arc = ArcLength::of(rail);
-    (0..count).map(|i| arc.point_at_fraction(i as f64 / (count - 1) as f64)).collect()
-}
-
-/// Whether two closed curves joined by two rails run opposite ways, which the order of two feet cannot tell.
-fn opposed(rails: &[Curve], start: &Curve, end: &Curve) -> bool {
-    let direction = |at_end: bool| {
-        let along = |rail: &Curve| {
-            let arc = ArcLength::of(rail);
-            arc.tangent_at(if at_end { arc.length() } else { 0.0 })
-        };
-        rails.iter().map(along).sum::<DVec3>().normalize_or_zero()
+/// A tube along rails past two or more closed curves, as [`between_closed()`] makes one between two: several profile
+/// curves shape it at once.
+///
+/// Between the first and the last of the `profiles` a generator is pinned where it passes each other one, at the section
+/// nearest to the mean share of the rails' lengths; it bends smoothly there, as the beam does at a pin. With `neighbours`
+/// the tube leaves the first profile, or reaches the last one, in the direction of the surface beyond it; a rail that
+/// does not is bent there, with a warning.
+///
+/// # Errors
+/// As [`between_closed()`], and for fewer than 2 profiles or 2 sections for each, profiles that a rail does not meet in
+/// their order, and a neighbour without directions.
+pub fn through_closed(
+    rails: &[Curve],
+    profiles: &[Curve],
+    neighbours: [Option<Neighbour<'_>>; 2],
+    options: &GenerateOptions,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<Generated, GenerateError> {
+    let drawing = Drawing {
+        rails,
+        profiles: profiles.iter().collect(),
+        closed: true,
+        apex: false,
+        neighbours,
+        sides: [None, None],
     };
-    let (bottom, top) = (start.area_vector().normalize_or_zero(), end.area_vector().normalize_or_zero());
-    let (sink, rise) = (bottom.dot(direction(false)), top.dot(direction(true)));
-    // Rings in one plane, like those of an eye socket, are compared with each other instead.
-    if sink.abs() > 0.2 && rise.abs() > 0.2 { sink * rise < 0.0 } else { bottom.dot(top) < 0.0 }
+    sweep(&drawing, options, progress)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::curve::closest;
+    use crate::curve::{ArcLength, closest};
+    use crate::generate::Weights;
+    use crate::sections::Sections;
+    use glam::DVec3;
     use std::f64::consts::TAU;
 
     const RING: usize = 4000;
@@ -376,16 +235,6 @@ mod tests {
         assert!(made.sections.points().iter().all(|p| p.y.abs() < 1e-15));
         let reversed = between_closed(&rails[1..3], &outer, &inner.reversed(), &options(Weights::Smooth), &|_| true);
         assert!(matches!(reversed, Err(GenerateError::CurveIsReversed { .. })));
-    }
-
-    #[test]
-    fn points_are_shared_out_by_length_two_at_least() {
-        let (bottom, top) = ([0.0, 1.0, 1.1, 4.0], [0.0, 1.0, 1.1, 4.0]);
-        let mut notes = Vec::new();
-        assert_eq!(share_out(40, &bottom, &top, &mut notes), [10, 2, 28]);
-        assert!(notes.is_empty());
-        assert_eq!(share_out(3, &bottom, &top, &mut notes), [2, 2, 2]);
-        assert!(notes[0].contains("3 points") && notes[0].contains("6 are used"), "{notes:?}");
     }
 
     #[test]

@@ -55,8 +55,146 @@ pub enum GenerateError {
         /// Its name.
         name: String,
     },
+    /// A closed curve where an open one is needed.
+    #[error("the {which} curve (\"{name}\") is closed: a sheet lies between open curves, so cut it or draw it open")]
+    CurveIsClosed {
+        /// `start`, `inner` or `end`.
+        which: &'static str,
+        /// Its name.
+        name: String,
+    },
+    /// Fewer curves across the rails than needed.
+    #[error("{found} curve(s) across the rails given, and at least {needed} needed: draw another one")]
+    TooFewProfiles {
+        /// Curves found.
+        found: usize,
+        /// Curves needed.
+        needed: usize,
+    },
+    /// A rail that does not meet the curves across it in their order.
+    #[error(
+        "rail {rail} (\"{name}\") does not meet curve {second} across the rails behind curve {first}: list these curves \
+         in the order in which the rails run"
+    )]
+    ProfileOrder {
+        /// Index of the rail, counted from 0.
+        rail: usize,
+        /// Its name.
+        name: String,
+        /// Index of the one curve, counted from 0; with an apex that counts as the last.
+        first: usize,
+        /// Index of the next one.
+        second: usize,
+    },
+    /// A rail that ends away from where the rails meet.
+    #[error(
+        "rail {rail} (\"{name}\") ends {distance:.4} m away from the point where the rails meet, farther than the snap \
+         of {snap} m: draw it up to the others' ends, pass the rails through `sort`, or raise the snap"
+    )]
+    NoApex {
+        /// Index of the rail, counted from 0.
+        rail: usize,
+        /// Its name.
+        name: String,
+        /// Distance, metres.
+        distance: f64,
+        /// The snap, metres.
+        snap: f64,
+    },
+    /// Directions that do not match the points of a border.
+    #[error("{found} direction(s) given for border \"{border}\" of {needed} points: give one a point")]
+    DirectionCount {
+        /// Name of the border.
+        border: String,
+        /// Directions found.
+        found: usize,
+        /// Points of the border.
+        needed: usize,
+    },
+    /// A place at which a neighbour has no direction.
+    #[error(
+        "the neighbour of border \"{border}\" has no direction at ({:.4}, {:.4}, {:.4}): its curve must lie beside the \
+         border, not on it, and directions must be finite and not zero", point.x, point.y, point.z
+    )]
+    NoDirection {
+        /// Name of the border.
+        border: String,
+        /// The place, metres.
+        point: glam::DVec3,
+    },
+    /// Fewer points a section than the case needs.
+    #[error("{found} point(s) a section asked for, and this case needs at least {needed}")]
+    TooFewNodes {
+        /// Points asked for.
+        found: usize,
+        /// Points needed.
+        needed: usize,
+    },
+    /// An open contour that leaves a closed one where it comes back.
+    #[error(
+        "\"{name}\" starts and ends at one point of \"{curve}\", and so does not cut it in two: draw it across the \
+         closed curve"
+    )]
+    BothEndsAtOnePoint {
+        /// Name of the open curve.
+        name: String,
+        /// Name of the closed curve.
+        curve: String,
+    },
+    /// A border that encloses next to nothing.
+    #[error("border \"{border}\" encloses next to no area, so that it has no inside: draw it rounder")]
+    EnclosesNothing {
+        /// Its name.
+        border: String,
+    },
+    /// A strength that is none.
+    #[error(
+        "the strength at border \"{border}\" is {strength}: it must be above 0, and at most {}",
+        super::BlendBorder::LARGEST_STRENGTH
+    )]
+    Strength {
+        /// Name of the border.
+        border: String,
+        /// What was given.
+        strength: f64,
+    },
+    /// A twist that is no angle.
+    #[error("the twist is {twist}: it must be a finite number of radians")]
+    Twist {
+        /// What was given.
+        twist: f64,
+    },
+    /// A number of borders that no patch has.
+    #[error(
+        "{found} border curve(s) given, and a patch has 3 or 4: draw a curve across a larger field and fill both parts"
+    )]
+    BorderCount {
+        /// Borders found.
+        found: usize,
+    },
+    /// Borders that do not close a loop.
+    #[error(
+        "border {border} (\"{name}\") ends {distance:.4} m away from the next one, farther than the snap of {snap} m: \
+         draw the borders from corner to corner, or raise the snap"
+    )]
+    BordersApart {
+        /// Index of the border, counted from 0.
+        border: usize,
+        /// Its name.
+        name: String,
+        /// Distance, metres.
+        distance: f64,
+        /// The snap, metres.
+        snap: f64,
+    },
+    /// Curves that are no detail together.
+    #[error("{what}")]
+    NoMethod {
+        /// What is there, and what would be a detail.
+        what: String,
+    },
     /// Fewer rails than go around.
-    #[error("{found} rail(s) given between the closed curves, and at least 2 are needed: draw another one")]
+    #[error("{found} rail(s) given, and at least 2 are needed: draw another one")]
     TooFewRails {
         /// Rails found.
         found: usize,
@@ -71,7 +209,7 @@ pub enum GenerateError {
         rail: usize,
         /// Its name.
         name: String,
-        /// `starts` or `ends`.
+        /// `starts`, `passes` or `ends`.
         ends: &'static str,
         /// Distance, metres.
         distance: f64,
@@ -107,8 +245,7 @@ pub enum GenerateError {
     },
     /// Rails whose feet are not in order around a closed curve.
     #[error(
-        "rails {first} and {second} cross: around the {which} curve (\"{curve}\") their order is not that of the \
-         list; put the curves through sort, or redraw one of them"
+        "rails {first} and {second} cross: along the {which} curve (\"{curve}\") their order is not that of the list; put the curves through sort, or redraw one of them"
     )]
     Crossing {
         /// Index of the one rail, counted from 0.

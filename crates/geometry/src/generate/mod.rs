@@ -3,33 +3,74 @@
 //! | case | curves | source |
 //! |---|---|---|
 //! | [`two_views`] | four open rails, a pair from each of two views | thesis 6.1, Figures 6.1-6.3 |
+//! | [`arch`] | one open contour over a closed one | thesis 6.2, Figures 6.4, 6.5 |
+//! | [`to_apex`] | two open contours and a closed one, cut where they cross; any number of rails to a point | thesis 6.3, Figures 6.6, 6.7 |
 //! | [`between_closed`] | two or more open rails between two closed curves | thesis 6.3, Figures 6.8, 6.9 |
+//! | [`through_closed`] | the same past several closed curves | |
+//! | [`sheet`] | two or more open rails between two or more open curves | thesis 6.3, Figure 6.10 |
+//! | [`network`] | three or four borders, with rails across | paper 5.2.4 |
+//! | [`blend`] | two closed borders of two surfaces | paper 5.2.5 |
+//!
+//! [`Detail`] offers all of them at one door. Where a [`Neighbour`] is given, the surface continues it smoothly.
 //!
 //! Every generator takes `progress`, called with the fraction done; where it answers `false` the generator stops with
 //! [`GenerateError::Cancelled`].
 
+mod alignment;
 mod apex;
+mod arch;
+#[cfg(test)]
+mod arch_tests;
 mod between_closed;
+mod blend;
+#[cfg(test)]
+mod blend_tests;
 mod case;
 mod centring;
+mod detail;
 mod error;
 mod feet;
 mod local_detail;
+#[cfg(test)]
+mod look_tests;
+mod neighbour;
+mod network;
+#[cfg(test)]
+mod network_tests;
 mod order;
 mod pace;
 mod patch;
+mod places;
+mod sheet;
+#[cfg(test)]
+mod sheet_tests;
+mod side;
+mod sweep;
+#[cfg(test)]
+mod test_shapes;
+mod to_apex;
+#[cfg(test)]
+mod to_apex_tests;
 mod turning;
 #[cfg(test)]
 mod turning_tests;
 mod two_views;
 mod view_plane;
+mod walk;
 mod winding;
 
-pub use between_closed::between_closed;
+pub use arch::{ArchBorder, arch};
+pub use between_closed::{between_closed, through_closed};
+pub use blend::{BlendBorder, blend};
 pub use case::Case;
+pub use detail::{Detail, Method};
 pub use error::GenerateError;
 pub use local_detail::LocalDetail;
+pub use neighbour::Neighbour;
+pub use network::network;
 pub use patch::blend_generators;
+pub use sheet::sheet;
+pub use to_apex::to_apex;
 pub use two_views::two_views;
 
 use crate::beam::{MOST_NODES, Stiffness};
@@ -148,7 +189,7 @@ pub struct Generated {
     pub warnings: Vec<String>,
     /// Largest distance bridged between a rail's end and where it should be, metres; at most the snap.
     pub largest_gap: f64,
-    /// The distances bridged at the start and at the end of each rail, metres.
+    /// The distances bridged at the start and at the end of each rail, metres; none for a blend, which has no rails.
     pub gaps: Vec<[f64; 2]>,
 }
 

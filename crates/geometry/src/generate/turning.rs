@@ -7,8 +7,10 @@
 //!
 //! `d = base + m + (1-w) R(theta - theta_5) (delta_5 - m) + w R(theta - theta_6) (delta_6 - m)`,
 //!
-//! where `base = a H00 + b H01` joins the ends of the generator, `delta` is a rail less the base between its own ends,
-//! and `theta` the angle at which the closed curves are seen from their centres. `m` is what all rails have in common:
+//! where `base = a H00 + b H01` joins the ends of the generator (with closed curves between them, the sum of its points
+//! there times their cardinal functions), `delta` is a rail less the base through its own points, and `theta` the angle
+//! at which the closed curves are seen from their centres; where rails meet in an apex, that of the rails about the
+//! normal of their tangents. `m` is what all rails have in common:
 //! the rest turns, that does not, or a bent tube would be pinched between its rails as the vase was. It is the vector
 //! in the best fit, by least squares over the rails, of `m + R(theta_k) r` to `delta_k`. So surfaces of revolution come
 //! out round from any two rails, and so do tubes bent sideways where the rails do not all stand on one side. Rails and
@@ -20,7 +22,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use super::winding::{NoWinding, Winding};
-use crate::beam::HermiteBasis;
+use crate::beam::OpenCardinals;
 use crate::curve::Curve;
 
 /// A closed curve this many times smaller than the other one is too small to say how it turns.
@@ -33,156 +35,199 @@ const LEAST_COSINE: f64 = -0.9;
 /// turn) cannot tell a shift from a swelling, which then counts for more.
 const LEAST_SPREAD: f64 = 0.5;
 
+/// What stands at one place along the rails, for telling angles.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Stand<'a> {
+    /// A closed curve; the first foot lies `origin` metres along it.
+    Ring {
+        /// The curve.
+        curve: &'a Curve,
+        /// Arc length of the first foot, metres.
+        origin: f64,
+    },
+    /// The apex of a fan of rails about this unit normal; offsets are angles.
+    Fan(DVec3),
+    /// Nothing that tells angles.
+    Point,
+}
+
 /// How the frames turn from rail to rail and from section to section.
 #[derive(Clone, Debug)]
 pub(super) struct Turning<'a> {
-    sides: Sides<'a>,
-    /// Angles of each foot behind the first; at last a whole turn.
-    feet: Vec<[f64; 2]>,
+    places: Places<'a>,
+    /// Angles of each foot behind the first at each place; at last a whole turn.
+    feet: Vec<Vec<f64>>,
     rows: Vec<Row>,
     /// What each rail adds to the base, one point a section.
     displacements: Vec<Vec<DVec3>>,
 }
 
 impl<'a> Turning<'a> {
-    /// The frames between two closed curves for sampled rails; `offsets` are the arc lengths of the feet behind the
-    /// first one, at `origins`, on both curves.
+    /// The frames for sampled rails past the places that `functions` hold; `offsets` are those of the feet behind the
+    /// first one at each place.
     ///
     /// # Errors
     /// A clause for the artist: why the closed curves do not tell how to turn.
     pub(super) fn new(
-        curves: [&'a Curve; 2],
-        origins: [f64; 2],
-        offsets: [&[f64]; 2],
+        stands: &[Stand<'a>],
+        offsets: &[&[f64]],
         sampled: &[Vec<DVec3>],
-        basis: &HermiteBasis,
+        functions: &OpenCardinals,
     ) -> Result<Self, String> {
-        let sides = Sides::new(curves, origins)?;
-        let mut feet: Vec<[f64; 2]> =
-            (0..sampled.len()).map(|k| sides.angles([offsets[0][k], offsets[1][k]])).collect();
-        feet.push([TAU; 2]);
-        let displacements: Vec<Vec<DVec3>> = sampled.iter().map(|rail| displacement(rail, basis)).collect();
-        let rows = (0..basis.nodes())
+        let places = Places::new(stands)?;
+        let foot = |rail: usize| places.angles(&offsets.iter().map(|of| of[rail]).collect::<Vec<f64>>());
+        let mut feet: Vec<Vec<f64>> = (0..sampled.len()).map(foot).collect();
+        feet.push(vec![TAU; stands.len()]);
+        let displacements: Vec<Vec<DVec3>> = sampled.iter().map(|rail| displacement(rail, functions)).collect();
+        let rows = (0..functions.nodes())
             .map(|i| {
-                let of_end = basis.h01[i];
-                let axis = sides.normals[0].lerp(sides.normals[1], of_end).normalize_or_zero();
-                let angles: Vec<f64> = feet.iter().map(|foot| blend(*foot, of_end)).collect();
-                Row { axis, of_end, common: common(axis, &angles, |rail| displacements[rail][i]) }
+                let weights: Vec<f64> = functions.positions().iter().map(|function| function[i]).collect();
+                let axis = places.normals.iter().zip(&weights).map(|(n, w)| *n * *w).sum::<DVec3>().normalize_or_zero();
+                let angles: Vec<f64> = feet.iter().map(|foot| blend(foot, &weights)).collect();
+                let common = common(axis, &angles, |rail| displacements[rail][i]);
+                Row { axis, weights, common }
             })
             .collect();
-        Ok(Self { sides, feet, rows, displacements })
+        Ok(Self { places, feet, rows, displacements })
     }
 
-    /// The generator with the weight `w` of the rail behind `patch` against the rail at it, from `ends.0` to `ends.1`,
-    /// which lie `offsets` behind the first foot on the closed curves.
+    /// The generator with the weight `w` of the rail behind `patch` against the rail at it through the points `through`,
+    /// which lie `offsets` behind the first foot at each place.
     pub(super) fn generator(
         &self,
         patch: usize,
         w: f64,
-        offsets: [f64; 2],
-        ends: (DVec3, DVec3),
-        basis: &HermiteBasis,
+        offsets: &[f64],
+        through: &[DVec3],
+        functions: &OpenCardinals,
     ) -> Vec<DVec3> {
         let next = (patch + 1) % self.displacements.len();
-        let here = self.sides.angles(offsets);
-        let behind = |foot: [f64; 2]| [here[0] - foot[0], here[1] - foot[1]];
-        let (from_this, from_next) = (behind(self.feet[patch]), behind(self.feet[patch + 1]));
+        let here = self.places.angles(offsets);
+        let behind = |foot: &[f64]| -> Vec<f64> { here.iter().zip(foot).map(|(a, b)| a - b).collect() };
+        let (from_this, from_next) = (behind(&self.feet[patch]), behind(&self.feet[patch + 1]));
         let mut generator: Vec<DVec3> = self
             .rows
             .iter()
             .enumerate()
             .map(|(i, row)| {
-                let base = ends.0 * basis.h00[i] + ends.1 * basis.h01[i];
-                let turned = |rail: usize, angles: [f64; 2]| {
-                    rotate(row.axis, blend(angles, row.of_end), self.displacements[rail][i] - row.common)
+                let base: DVec3 = through.iter().zip(&row.weights).map(|(p, h)| *p * *h).sum();
+                let turned = |rail: usize, angles: &[f64]| {
+                    rotate(row.axis, blend(angles, &row.weights), self.displacements[rail][i] - row.common)
                 };
-                base + row.common + turned(patch, from_this) * (1.0 - w) + turned(next, from_next) * w
+                base + row.common + turned(patch, &from_this) * (1.0 - w) + turned(next, &from_next) * w
             })
             .collect();
-        if let Some(first) = generator.first_mut() {
-            *first = ends.0;
-        }
-        if let Some(last) = generator.last_mut() {
-            *last = ends.1;
+        for (node, point) in functions.held().iter().zip(through) {
+            generator[*node] = *point;
         }
         generator
     }
 }
 
 /// The frame of one section.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 struct Row {
     /// Unit axis about which displacements turn.
     axis: DVec3,
-    /// Share of the end in angles, 0 to 1.
-    of_end: f64,
+    /// Share of each place in angles; they add up to 1.
+    weights: Vec<f64>,
     /// What all rails have in common, `m`; metres.
     common: DVec3,
 }
 
-/// Start and end, of which one may be unable to tell angles and is then stood in for by the other.
+/// How one place tells angles.
 #[derive(Clone, Debug)]
-struct Sides<'a> {
-    windings: [Option<Winding<'a>>; 2],
-    normals: [DVec3; 2],
-    /// Arc length of the first foot.
-    origins: [f64; 2],
+enum Angles<'a> {
+    Ring(Winding<'a>, f64),
+    Fan,
+    /// As the place of this index does, to which the offsets belong as well.
+    Like(usize),
 }
 
-impl<'a> Sides<'a> {
-    fn new(curves: [&'a Curve; 2], origins: [f64; 2]) -> Result<Self, String> {
-        let [start, end] = curves.map(Winding::of);
-        for (found, curve) in [(&start, curves[0]), (&end, curves[1])] {
-            if found.as_ref().is_err_and(|why| *why == NoWinding::Folded) {
-                let name = curve.name();
-                return Err(format!("closed curve \"{name}\" turns back on itself as seen from its centre"));
+/// All places in order, of which some may be unable to tell angles and are then stood in for by the nearest one that is.
+#[derive(Clone, Debug)]
+struct Places<'a> {
+    angles: Vec<Angles<'a>>,
+    normals: Vec<DVec3>,
+}
+
+impl<'a> Places<'a> {
+    fn new(stands: &[Stand<'a>]) -> Result<Self, String> {
+        let mut found: Vec<Option<(Angles<'a>, DVec3)>> = Vec::new();
+        let mut sizes = Vec::new();
+        let mut flat = Vec::new();
+        for stand in stands {
+            let (angles, size) = match *stand {
+                Stand::Ring { curve, origin } => match Winding::of(curve) {
+                    Ok(winding) => {
+                        let (normal, size) = (winding.normal, winding.size);
+                        (Some((Angles::Ring(winding, origin), normal)), size)
+                    }
+                    Err(NoWinding::Folded) => {
+                        let name = curve.name();
+                        return Err(format!("closed curve \"{name}\" turns back on itself as seen from its centre"));
+                    }
+                    Err(NoWinding::Flat) => {
+                        flat.push(format!("\"{}\"", curve.name()));
+                        (None, 0.0)
+                    }
+                },
+                Stand::Fan(normal) => (Some((Angles::Fan, normal)), f64::INFINITY),
+                Stand::Point => (None, 0.0),
+            };
+            found.push(angles);
+            sizes.push(size);
+        }
+        let largest = sizes.iter().copied().filter(|size| size.is_finite()).fold(0.0, f64::max);
+        for (found, size) in found.iter_mut().zip(sizes) {
+            if size < TINY * largest {
+                *found = None;
             }
         }
-        let (start, end) = match (start.ok(), end.ok()) {
-            (Some(start), Some(end)) if start.size < TINY * end.size => (None, Some(end)),
-            (Some(start), Some(end)) if end.size < TINY * start.size => (Some(start), None),
-            both => both,
-        };
-        let normals = match (&start, &end) {
-            (Some(start), Some(end)) => [start.normal, end.normal],
-            (Some(one), None) | (None, Some(one)) => [one.normal; 2],
-            (None, None) => {
-                let (one, other) = (curves[0].name(), curves[1].name());
-                return Err(format!("closed curves \"{one}\" and \"{other}\" enclose next to no area"));
-            }
-        };
-        if normals[0].dot(normals[1]) < LEAST_COSINE {
+        let able: Vec<usize> = (0..found.len()).filter(|k| found[*k].is_some()).collect();
+        if able.is_empty() {
+            let (curves, verb) = if flat.len() > 1 { ("curves", "enclose") } else { ("curve", "encloses") };
+            return Err(format!("closed {curves} {} {verb} next to no area", flat.join(" and ")));
+        }
+        let nearest = |k: usize| able.iter().copied().min_by_key(|other| other.abs_diff(k)).unwrap_or(k);
+        let normal = |k: usize| found[nearest(k)].as_ref().map_or(DVec3::ZERO, |found| found.1);
+        let normals: Vec<DVec3> = (0..found.len()).map(normal).collect();
+        if normals.windows(2).any(|pair| pair[0].dot(pair[1]) < LEAST_COSINE) {
             return Err("the closed curves face opposite ways, so that no axis runs from one to the other".to_owned());
         }
-        Ok(Self { windings: [start, end], normals, origins })
+        let stand_ins: Vec<usize> = (0..found.len()).map(nearest).collect();
+        let angles = found
+            .into_iter()
+            .zip(stand_ins)
+            .map(|(found, nearest)| found.map_or(Angles::Like(nearest), |found| found.0))
+            .collect();
+        Ok(Self { angles, normals })
     }
 
-    /// Angles behind the first foot of the points `offsets` behind it on start and end, radians.
-    fn angles(&self, offsets: [f64; 2]) -> [f64; 2] {
-        let of = |side: usize| {
-            let origin = self.origins[side];
-            self.windings[side]
-                .as_ref()
-                .map(|winding| winding.angle_at(origin + offsets[side]) - winding.angle_at(origin))
+    /// Angles behind the first foot of what lies `offsets` behind it at each place, radians.
+    fn angles(&self, offsets: &[f64]) -> Vec<f64> {
+        let of = |k: usize| match &self.angles[k] {
+            Angles::Ring(winding, origin) => winding.angle_at(origin + offsets[k]) - winding.angle_at(*origin),
+            Angles::Fan | Angles::Like(_) => offsets[k],
         };
-        match (of(0), of(1)) {
-            (Some(start), Some(end)) => [start, end],
-            (Some(one), None) | (None, Some(one)) => [one; 2],
-            (None, None) => [0.0; 2],
+        let place = |k: usize| if let Angles::Like(other) = self.angles[k] { of(other) } else { of(k) };
+        (0..self.angles.len()).map(place).collect()
+    }
+}
+
+fn blend(angles: &[f64], weights: &[f64]) -> f64 {
+    angles.iter().zip(weights).map(|(angle, weight)| angle * weight).sum()
+}
+
+/// What a rail adds to the base through its own points: nothing there.
+fn displacement(rail: &[DVec3], functions: &OpenCardinals) -> Vec<DVec3> {
+    let mut rest = rail.to_vec();
+    for (node, function) in functions.held().iter().zip(functions.positions()) {
+        for (point, weight) in rest.iter_mut().zip(function) {
+            *point -= rail[*node] * *weight;
         }
     }
-}
-
-fn blend(angles: [f64; 2], of_end: f64) -> f64 {
-    angles[0] * (1.0 - of_end) + angles[1] * of_end
-}
-
-/// What a rail adds to the base between its own ends: nothing at both.
-fn displacement(rail: &[DVec3], basis: &HermiteBasis) -> Vec<DVec3> {
-    let (Some(first), Some(last)) = (rail.first().copied(), rail.last().copied()) else {
-        return Vec::new();
-    };
-    rail.iter().zip(&basis.h00).zip(&basis.h01).map(|((p, h00), h01)| *p - first * *h00 - last * *h01).collect()
+    rest
 }
 
 /// The part across the axis that all rails have in common: `m` of the fit of `m + R(theta_k) r` to their displacements,
