@@ -10,11 +10,16 @@ use maquette_graph::{Catalogue, Value};
 
 use crate::wire;
 
+mod analytic;
+
 /// Lets golden files hold values of all wire types of this library.
 pub(crate) fn register(catalogue: &mut Catalogue) {
     catalogue.freezable::<wire::Curve>();
     catalogue.freezable::<wire::Curves>();
     catalogue.freezable::<wire::Sections>();
+    catalogue.freezable::<wire::EllipticSections>();
+    catalogue.freezable::<wire::CrossSections>();
+    catalogue.freezable::<wire::Surface>();
     catalogue.freezable::<wire::Mesh>();
     catalogue.freezable::<wire::MeshResult>();
     catalogue.freezable::<wire::CurvesResult>();

@@ -66,6 +66,11 @@ pub fn catalogue() -> Result<Catalogue, CatalogueError> {
         let joined = join(meshes.iter().map(|mesh| &*mesh.0)).map_err(|error| error.to_string())?;
         Ok(wire::Mesh::new(joined))
     })?;
+    catalogue
+        .conversion::<wire::Sections, wire::CrossSections>(|points| Ok(wire::CrossSections::Points(points.clone())))?;
+    catalogue.conversion::<wire::EllipticSections, wire::CrossSections>(|series| {
+        Ok(wire::CrossSections::Series(series.clone()))
+    })?;
     frozen::register(&mut catalogue);
     for kind in kinds() {
         catalogue.register(kind)?;

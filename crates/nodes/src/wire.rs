@@ -1,5 +1,9 @@
 //! The types that travel along wires.
 
+mod analytic;
+
+pub use analytic::{CrossSections, EllipticSections, NamedSection, SectionFit, Surface};
+
 use std::sync::Arc;
 
 use glam::DVec3;
