@@ -129,7 +129,7 @@ pub(crate) fn kind() -> NodeKind {
                     most: ports.count(segment_harmonics),
                     corner_angle: ports.value(corner).to_radians(),
                 },
-                SplitChoice::Given => match joints_of(ports.read(joints), how).at(joints)? {
+                SplitChoice::Given => match joints_of(ports.read(joints).as_str(), how).at(joints)? {
                     none if none.is_empty() => {
                         return Err("no joint is given: write angles in degrees, such as 45, 180:C0").at(joints);
                     }

@@ -158,13 +158,14 @@ impl Inputs {
         [sections, constants]: [FigureHandle; 2],
     ) -> Result<AnalyticSurface, NodeError> {
         let continuity = ports.choice(self.continuity).0;
-        let neighbour = |input, side, otherwise: EndChoice| -> Result<EndCondition, NodeError> {
-            let Some(beside) = ports.read_optional(input) else { return Ok(otherwise.condition()) };
-            let parts = beside.series().at(input)?;
-            let part = if side == Side::Start { parts.last() } else { parts.first() };
-            let part = part.ok_or("the surface has no part").at(input)?;
-            Ok(EndCondition::Neighbour { surface: part.clone(), continuity })
-        };
+        let neighbour =
+            |input: OptionalInput<wire::Surface>, side, otherwise: EndChoice| -> Result<EndCondition, NodeError> {
+                let Some(beside) = ports.read_optional(input) else { return Ok(otherwise.condition()) };
+                let parts = beside.series().at(input)?;
+                let part = if side == Side::Start { parts.last() } else { parts.first() };
+                let part = part.ok_or("the surface has no part").at(input)?;
+                Ok(EndCondition::Neighbour { surface: part.clone(), continuity })
+            };
         let options = SurfaceOptions {
             blend: ports.choice(self.blend).0,
             parameter: ports.choice(self.parameter).0,
