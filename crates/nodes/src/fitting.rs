@@ -98,12 +98,18 @@ pub(crate) fn fit_row(named: &NamedSection) -> Vec<Cell> {
             fit.maximum.into(),
             fit.diagonal.into(),
             fit.worst_distance.into(),
-            fit.worst_angle.to_degrees().into(),
+            turned(fit.worst_angle, named.section.is_closed()).into(),
             Cell::from(fit.met),
         ]),
         None => row.extend([0.0.into(), 0.0.into(), 0.0.into(), 0.0.into(), 0.0.into(), Cell::from("exact")]),
     }
     row
+}
+
+/// An angle in degrees; of a closed section from 0 to below 360.
+fn turned(angle: f64, closed: bool) -> f64 {
+    let degrees = angle.to_degrees();
+    if closed { degrees.rem_euclid(360.0) } else { degrees }
 }
 
 /// A section as a polyline of `count` points at equal steps of its angle.
