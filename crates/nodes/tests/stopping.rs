@@ -114,7 +114,8 @@ fn nodes_on_shapes() {
             .set("before", Literal::Number(0.5))
             .set("after", Literal::Number(0.5))
     });
-    stops(&catalogue, "surface-from-cross-sections", 200, |h| h.give("sections", stack.clone()));
+    let points = wire::CrossSections::Points(stack.clone());
+    stops(&catalogue, "surface-from-cross-sections", 200, |h| h.give("sections", points.clone()));
     stops(&catalogue, "curves-from-sections", 100, |h| h.give("sections", stack.clone()));
 }
 
@@ -147,7 +148,7 @@ fn nodes_on_series() {
     // The search for joints asks before each section of each try.
     let square = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)].map(|(x, z)| DVec3::new(x, 0.0, z)).to_vec();
     let square = wire::Curves(vec![Curve::new("square", square, true).unwrap()]);
-    stops(&catalogue, "fit-sections", 6, |h| {
+    stops(&catalogue, "fit-sections", 5, |h| {
         h.give("curves", square.clone())
             .set("split", choice("automatic"))
             .set("largest-distance", Literal::Number(0.01))
