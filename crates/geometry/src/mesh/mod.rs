@@ -8,6 +8,7 @@ pub mod measure;
 mod polygon;
 pub mod ray;
 pub mod slice;
+pub mod stroke;
 pub mod topology;
 pub mod transform;
 mod triangle_tree;

@@ -24,7 +24,7 @@ pub(crate) fn kind() -> NodeKind {
     let curves = node.output::<wire::Curves>("curves", "The same as curves; sections that are a point are left out.");
     node.evaluate(move |ports| {
         let all = &ports.read(sections).0;
-        let chosen = chosen(ports.read(which), all).at(which)?;
+        let chosen = chosen(ports.read(which).as_str(), all).at(which)?;
         let points = ports.count(count);
         let mut drawn = Vec::new();
         for named in &chosen {
