@@ -49,8 +49,13 @@ fn kinds() -> Vec<NodeKind> {
         output::curves_out::kind(),
         output::mesh_out::kind(),
         section::curves_from_sections::kind(),
+        section::edit_section::kind(),
+        section::fit_report::kind(),
         section::fit_sections::kind(),
+        section::pick_sections::kind(),
+        surface::continuity_report::kind(),
         surface::join_surfaces::kind(),
+        surface::section_at::kind(),
         surface::surface_from_cross_sections::kind(),
         surface::tessellate::kind(),
     ]
