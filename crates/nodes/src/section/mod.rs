@@ -1,3 +1,6 @@
 //! Nodes that work on sections.
 
 pub(crate) mod curves_from_sections;
+pub(crate) mod ellipse;
+pub(crate) mod order_sections;
+pub(crate) mod sections_from_mesh;
