@@ -391,10 +391,10 @@ fn half_the_numbers_are_nearly_the_same_surface() {
         .map(|u| surface.evaluate(u, 2.0).position.distance(sparse.evaluate(u, 2.0).position));
     let apart = apart.fold(0.0, f64::max);
     assert!(apart > 1e-4 && apart < 0.05, "{apart}");
-    assert!(surface.numbers().eq(AnalyticSurface::through(&stack(12), &SurfaceOptions::default()).unwrap().numbers()));
+    assert!(surface.numbers() == AnalyticSurface::through(&stack(12), &SurfaceOptions::default()).unwrap().numbers());
     let natural = SurfaceOptions { start: EndCondition::Natural, ..SurfaceOptions::default() };
     let natural = AnalyticSurface::through(&stack(12), &natural).unwrap();
-    assert!(!surface.numbers().eq(natural.numbers()) && !surface.numbers().eq(fewer.numbers()));
+    assert!(surface.numbers() != natural.numbers() && surface.numbers() != fewer.numbers());
     assert_eq!(surface.with_harmonics(2).unwrap(), surface);
     assert_eq!(surface.with_sections(12).unwrap(), surface);
     assert_eq!(surface.with_sections(1).unwrap_err().to_string(), "1 sections asked for, and there can be 2 to 12");
