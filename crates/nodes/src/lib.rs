@@ -9,6 +9,8 @@ mod generate;
 mod input;
 mod mesh;
 mod output;
+mod placement;
+mod primitive;
 mod section;
 mod stiffness;
 mod surface;
@@ -33,13 +35,21 @@ fn kinds() -> Vec<NodeKind> {
         generate::detail_generator::kind(),
         input::import_curves::kind(),
         input::import_mesh::kind(),
+        input::import_skeleton::kind(),
         input::sketch::kind(),
+        mesh::caps::kind(),
         mesh::join_meshes::kind(),
+        mesh::join_parts::kind(),
         mesh::mirror_mesh::kind(),
         mesh::transform_mesh::kind(),
         output::curves_out::kind(),
         output::mesh_out::kind(),
+        primitive::primitive_shape::kind(),
+        primitive::superellipsoid::kind(),
         section::curves_from_sections::kind(),
+        section::ellipse::kind(),
+        section::order_sections::kind(),
+        section::sections_from_mesh::kind(),
         surface::surface_from_cross_sections::kind(),
     ]
 }
@@ -70,6 +80,9 @@ pub fn catalogue() -> Result<Catalogue, CatalogueError> {
         .conversion::<wire::Sections, wire::CrossSections>(|points| Ok(wire::CrossSections::Points(points.clone())))?;
     catalogue.conversion::<wire::EllipticSections, wire::CrossSections>(|series| {
         Ok(wire::CrossSections::Series(series.clone()))
+    })?;
+    catalogue.collect::<wire::EllipticSections, wire::EllipticSections>(|stacks| {
+        Ok(wire::EllipticSections::new(stacks.iter().flat_map(|stack| stack.0.iter().cloned()).collect()))
     })?;
     frozen::register(&mut catalogue);
     for kind in kinds() {

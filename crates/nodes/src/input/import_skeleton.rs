@@ -24,7 +24,8 @@ pub(crate) fn kind() -> NodeKind {
     );
     let scale = node.length("scale", 1.0, 1e-9..=1e9, "Length of one unit of the file; glTF's is a metre.");
     node.soft_range(scale, 0.001..=1.0);
-    let curves = node.output::<wire::Curves>("curves", "One open curve a chain, named \"first - last\" after its joints.");
+    let curves =
+        node.output::<wire::Curves>("curves", "One open curve a chain, named \"first - last\" after its joints.");
     let joints = node.figure("joints", Unit::None, "Joints in the file.");
     let table = node.table(
         "joints",
@@ -46,7 +47,7 @@ pub(crate) fn kind() -> NodeKind {
         ports.table(table, rows.collect());
         #[expect(clippy::cast_precision_loss, reason = "nodes of a file in memory")]
         ports.figure(joints, skeleton.joints().len() as f64);
-        let wanted = chains_named(ports.read(chains));
+        let wanted = chains_named(ports.read(chains).as_str());
         let bones = match wanted.is_empty() {
             true => all_chains(&skeleton).at(file)?,
             false => wanted.iter().map(|names| skeleton.bone(names)).collect::<Result<Vec<Curve>, _>>().at(chains)?,
@@ -59,8 +60,8 @@ pub(crate) fn kind() -> NodeKind {
 }
 
 fn chains_named(text: &str) -> Vec<Vec<&str>> {
-    let names = |chain: &str| -> Vec<&str> { Vec::from_iter(chain.split(',').map(str::trim)) };
-    text.split([';', '\n']).filter(|chain| !chain.trim().is_empty()).map(names).collect()
+    let chains = text.split([';', '\n']).filter(|chain| !chain.trim().is_empty());
+    chains.map(|chain| chain.split(',').map(str::trim).collect()).collect()
 }
 
 fn all_chains(skeleton: &Skeleton) -> Result<Vec<Curve>, String> {

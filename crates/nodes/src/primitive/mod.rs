@@ -7,11 +7,11 @@ pub(crate) mod primitive_shape;
 pub(crate) mod superellipsoid;
 
 /// Lays an error at the port where the remedy lies: counts at theirs, everything else at `size`.
-fn laid<T>(
+fn laid<T, S>(
     made: Result<T, PrimitiveError>,
     sections: Input<i64>,
     nodes: Input<i64>,
-    size: impl maquette_graph::InputHandle,
+    size: Input<S>,
 ) -> Result<T, NodeError> {
     match made {
         Err(error @ PrimitiveError::Count { what: "nodes", .. }) => Err(error).at(nodes),

@@ -34,7 +34,12 @@ pub(crate) fn kind() -> NodeKind {
     let placement = PlacementInputs::declare(&mut node, "The direction in which the sections are stacked.");
     let count = node.integer("sections", 16, 2..=4096, "Sections, evenly along the profile, poles included.");
     node.soft_range(count, 3.0..=64.0);
-    let nodes = node.integer("nodes", 32, 3..=65_536, "Points of each section, at equal angles; a multiple of 4 meets the silhouettes.");
+    let nodes = node.integer(
+        "nodes",
+        32,
+        3..=65_536,
+        "Points of each section, at equal angles; a multiple of 4 meets the silhouettes.",
+    );
     node.soft_range(nodes, 8.0..=128.0);
     let sections = node.output::<wire::Sections>(
         "sections",

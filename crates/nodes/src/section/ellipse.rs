@@ -16,13 +16,15 @@ pub(crate) fn kind() -> NodeKind {
         "A circle or an ellipse as a section: exact with one harmonic, nine constants.",
     );
     node.reference("thesis 3.1");
-    let before = node.optional::<EllipticSections>("before", "Sections behind which this one is put; none begins a stack.");
+    let before =
+        node.optional::<EllipticSections>("before", "Sections behind which this one is put; none begins a stack.");
     let name = node.text("name", "ellipse", "What the section is called.");
     let a = node.length("radius-a", 0.1, 1e-6..=1e4, "Half its first axis.");
     node.soft_range(a, 0.01..=1.0);
     let b = node.length("radius-b", 0.1, 1e-6..=1e4, "Half its second axis.");
     node.soft_range(b, 0.01..=1.0);
-    let placement = PlacementInputs::declare(&mut node, "The axis it stands across; it runs counter-clockwise about it.");
+    let placement =
+        PlacementInputs::declare(&mut node, "The axis it stands across; it runs counter-clockwise about it.");
     let points = node.integer("points", 64, 3..=65_536, "Points of the curve.");
     node.soft_range(points, 16.0..=256.0);
     let sections = node.output::<EllipticSections>("sections", "The sections before, and the ellipse behind them.");

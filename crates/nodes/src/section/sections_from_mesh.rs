@@ -56,7 +56,8 @@ pub(crate) fn kind() -> NodeKind {
     node.soft_range(count, 2.0..=64.0);
     let from = node.number("from", 0.0, -10.0..=11.0, "Place of the first section: 0 is the bone's start, 1 its end.");
     node.soft_range(from, -0.5..=1.0);
-    let to = node.number("to", 1.0, -10.0..=11.0, "Place of the last section; beyond its ends the bone goes on straight.");
+    let to =
+        node.number("to", 1.0, -10.0..=11.0, "Place of the last section; beyond its ends the bone goes on straight.");
     node.soft_range(to, 0.0..=1.5);
     let places = node.text(
         "at",
@@ -94,13 +95,11 @@ pub(crate) fn kind() -> NodeKind {
          closed loops in the plane.",
     );
     node.evaluate(move |ports| {
-        let one_by_one = numbers(ports.read(places)).at(places)?;
+        let one_by_one = numbers(ports.read(places).as_str()).at(places)?;
         let evenly = one_by_one.is_empty();
         let options = AlongOptions {
             positions: match evenly {
-                true => {
-                    Positions::Count { count: ports.count(count), extent: [ports.value(from), ports.value(to)] }
-                }
+                true => Positions::Count { count: ports.count(count), extent: [ports.value(from), ports.value(to)] },
                 false => Positions::At(one_by_one),
             },
             turning: ports.value(turning),
@@ -110,8 +109,7 @@ pub(crate) fn kind() -> NodeKind {
                 method: ports.choice(method).0,
             },
         };
-        let sliced =
-            along_while(&ports.read(mesh).0, &ports.read(bone).0, &options, &ports.progress_callback());
+        let sliced = along_while(&ports.read(mesh).0, &ports.read(bone).0, &options, &ports.progress_callback());
         let sliced = match sliced {
             Err(SliceError::Stopped) => return Err(NodeError::Cancelled),
             Err(error @ (SliceError::NoPolygons | SliceError::Curve { .. } | SliceError::Resample { .. })) => {
@@ -124,7 +122,9 @@ pub(crate) fn kind() -> NodeKind {
                 return Err(error).at(to);
             }
             Err(
-                error @ (SliceError::SectionCount { .. } | SliceError::OutOfReach { .. } | SliceError::NotGrowing { .. }),
+                error @ (SliceError::SectionCount { .. }
+                | SliceError::OutOfReach { .. }
+                | SliceError::NotGrowing { .. }),
             ) => return Err(error).at(places),
             Err(error @ SliceError::Turning { .. }) => return Err(error).at(turning),
             Err(error @ SliceError::PointCount { .. }) => return Err(error).at(points),
