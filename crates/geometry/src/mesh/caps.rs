@@ -61,6 +61,9 @@ pub struct ClosedLoop {
 /// Why open ends are not closed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CapError {
+    /// Told to stop.
+    #[error("stopped")]
+    Stopped,
     /// A mesh that has no open end.
     #[error("the mesh has no open loop: there is nothing to close")]
     NothingOpen,
@@ -123,8 +126,18 @@ pub enum CapError {
 /// [`CapError`] where nothing is open, a loop does not close, encloses nothing or does not suit the shape, or an option
 /// is out of range.
 pub fn cap(mesh: &Mesh, options: &CapOptions) -> Result<Capped, CapError> {
+    cap_while(mesh, options, &|_| true)
+}
+
+/// The same, calling `progress` with the share that is done.
+///
+/// # Errors
+/// As [`cap`], and [`CapError::Stopped`] where `progress` answers `false`.
+pub fn cap_while(mesh: &Mesh, options: &CapOptions, progress: &dyn Fn(f64) -> bool) -> Result<Capped, CapError> {
+    let told = |share: f64| if progress(share) { Ok(()) } else { Err(CapError::Stopped) };
     check(options)?;
-    let topology = Topology::new(mesh);
+    let topology = Topology::new_while(mesh, &|| told(0.0))?;
+    told(0.5)?;
     let loops = topology.boundary_loops();
     let mean = |rim: &[u32]| rim.iter().map(|v| mesh.positions()[*v as usize]).sum::<DVec3>() / rim.len() as f64;
     let chosen: Vec<&Vec<u32>> = match options.nearest {
@@ -142,7 +155,8 @@ pub fn cap(mesh: &Mesh, options: &CapOptions) -> Result<Capped, CapError> {
     }
     let mut parts = MeshParts { positions: mesh.positions().to_vec(), ..MeshParts::default() };
     let mut caps = Vec::with_capacity(chosen.len());
-    for rim in &chosen {
+    for (done, rim) in chosen.iter().enumerate() {
+        told(0.5 + 0.4 * done as f64 / chosen.len() as f64)?;
         let at = mean(rim);
         let open = |k: usize| topology.boundary_polygon(rim[k], rim[(k + 1) % rim.len()]).is_some();
         if rim.len() < 3 || !(0..rim.len()).all(open) {
@@ -162,6 +176,7 @@ pub fn cap(mesh: &Mesh, options: &CapOptions) -> Result<Capped, CapError> {
         let flatness = points.iter().map(|p| (*p - at).dot(lid.normal).abs()).fold(0.0, f64::max);
         caps.push(ClosedLoop { vertices: rim.len(), at, flatness });
     }
+    told(0.9)?;
     let open = loops.len() - chosen.len();
     Ok(Capped { mesh: joined(mesh, parts)?, caps, open })
 }

@@ -26,7 +26,7 @@ pub(crate) fn kind() -> NodeKind {
     node.soft_range(scale, 0.001..=1.0);
     let curves =
         node.output::<wire::Curves>("curves", "One open curve a chain, named \"first - last\" after its joints.");
-    let joints = node.figure("joints", Unit::None, "Joints in the file.");
+    let found = node.figure("bones", Unit::None, "Chains of joints that were made curves.");
     let table = node.table(
         "joints",
         &[("joint", Unit::None), ("parent", Unit::None), ("x", Unit::Length), ("y", Unit::Length), ("z", Unit::Length)],
@@ -45,14 +45,14 @@ pub(crate) fn kind() -> NodeKind {
             vec![joint.name.as_str().into(), parent.into(), x.into(), y.into(), z.into()]
         });
         ports.table(table, rows.collect());
-        #[expect(clippy::cast_precision_loss, reason = "nodes of a file in memory")]
-        ports.figure(joints, skeleton.joints().len() as f64);
         let wanted = chains_named(ports.read(chains).as_str());
         let bones = match wanted.is_empty() {
             true => all_chains(&skeleton).at(file)?,
             false => wanted.iter().map(|names| skeleton.bone(names)).collect::<Result<Vec<Curve>, _>>().at(chains)?,
         };
         let bones = bones.iter().map(|bone| bone.map(|p| p * size)).collect::<Result<Vec<Curve>, _>>().at(scale)?;
+        #[expect(clippy::cast_precision_loss, reason = "at most the nodes of a file in memory")]
+        ports.figure(found, bones.len() as f64);
         ports.write(curves, wire::Curves(bones));
         Ok::<(), NodeError>(())
     });

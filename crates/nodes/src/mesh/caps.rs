@@ -1,8 +1,8 @@
 //! **Caps**: open ends of a mesh are closed.
 
 use glam::DVec3;
-use maquette_geometry::mesh::caps::{CapError, CapOptions, CapShape, cap};
-use maquette_graph::{AtPort, Choices, NodeKind, Unit};
+use maquette_geometry::mesh::caps::{CapError, CapOptions, CapShape, cap_while};
+use maquette_graph::{AtPort, Choices, NodeError, NodeKind, Unit};
 
 use crate::wire;
 
@@ -69,13 +69,12 @@ pub(crate) fn kind() -> NodeKind {
                 Which::Nearest => Some(DVec3::from_array(ports.read(point).0)),
             },
         };
-        ports.progress(0.0)?;
-        let made = match cap(&ports.read(mesh).0, &options) {
+        let made = match cap_while(&ports.read(mesh).0, &options, &ports.progress_callback()) {
+            Err(CapError::Stopped) => return Err(NodeError::Cancelled),
             Err(error @ CapError::NotStarShaped { .. }) => return Err(error).at(shape),
             Err(error @ CapError::Point { .. }) => return Err(error).at(point),
             made => made.at(mesh)?,
         };
-        ports.progress(1.0)?;
         let rows = made.caps.iter().map(|cap| {
             vec![cap.vertices.into(), cap.at.x.into(), cap.at.y.into(), cap.at.z.into(), cap.flatness.into()]
         });

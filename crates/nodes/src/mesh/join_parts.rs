@@ -31,7 +31,7 @@ pub(crate) fn kind() -> NodeKind {
     let open = node.figure("open-loops", Unit::None, "Open loops that are left.");
     let junctions = node.figure("t-junctions", Unit::None, "Vertices within open edges of another part, not welded.");
     let table = node.table(
-        "seams",
+        "welds",
         &[
             ("part", Unit::None),
             ("other", Unit::None),

@@ -78,7 +78,7 @@ pub(crate) fn kind() -> NodeKind {
         "curves",
         "The sections along the bone: closed, counter-clockwise about its direction, begun at the front.",
     );
-    let found = node.figure("sections", Unit::None, "Sections found.");
+    let found = node.figure("found", Unit::None, "Sections found.");
     let missed = node.figure("missed", Unit::None, "Planes that do not meet the mesh.");
     let off = node.figure("largest-offset", Unit::Length, "Largest distance of a section's middle from the bone.");
     let table = node.table(
