@@ -2,12 +2,14 @@
 
 pub mod caps;
 pub mod check;
+pub mod cut;
 pub mod distance;
 pub(crate) mod ear_clipping;
 pub mod measure;
 mod polygon;
 pub mod ray;
 pub mod slice;
+pub mod stroke;
 pub mod topology;
 pub mod transform;
 mod triangle_tree;
