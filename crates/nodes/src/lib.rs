@@ -4,6 +4,7 @@
 mod affine;
 mod curve;
 mod deform;
+mod fitting;
 mod frozen;
 mod generate;
 mod input;
@@ -14,10 +15,12 @@ mod primitive;
 mod section;
 mod stiffness;
 mod surface;
+mod surfacing;
 mod view_plane;
 pub mod wire;
 
 use maquette_geometry::mesh::join;
+use maquette_geometry::sections::Sections;
 use maquette_graph::{Catalogue, CatalogueError, NodeKind};
 
 /// Every node kind of this library, in the order of the source tree. A file that is not listed fails
@@ -48,9 +51,12 @@ fn kinds() -> Vec<NodeKind> {
         primitive::superellipsoid::kind(),
         section::curves_from_sections::kind(),
         section::ellipse::kind(),
+        section::fit_sections::kind(),
         section::order_sections::kind(),
         section::sections_from_mesh::kind(),
+        surface::join_surfaces::kind(),
         surface::surface_from_cross_sections::kind(),
+        surface::tessellate::kind(),
     ]
 }
 
@@ -84,9 +90,28 @@ pub fn catalogue() -> Result<Catalogue, CatalogueError> {
     catalogue.collect::<wire::EllipticSections, wire::EllipticSections>(|stacks| {
         Ok(wire::EllipticSections::new(stacks.iter().flat_map(|stack| stack.0.iter().cloned()).collect()))
     })?;
+    catalogue
+        .conversion::<wire::EllipticSections, wire::Curves>(|series| fitting::as_curves(&series.0).map(wire::Curves))?;
+    catalogue
+        .conversion::<wire::Sections, wire::Curves>(|sections| sections_as_curves(&sections.0).map(wire::Curves))?;
     frozen::register(&mut catalogue);
     for kind in kinds() {
         catalogue.register(kind)?;
     }
     Ok(catalogue)
+}
+
+/// Sections of points as curves of their points.
+fn sections_as_curves(sections: &Sections) -> Result<Vec<maquette_geometry::curve::Curve>, String> {
+    let as_curve = |(index, points): (usize, &[glam::DVec3])| {
+        maquette_geometry::curve::Curve::new(format!("section {index}"), points.to_vec(), sections.is_closed()).map_err(
+            |error| {
+                format!(
+                    "section {index} is no curve: {error}; a `curves-from-sections` node leaves out sections that are \
+                     a point"
+                )
+            },
+        )
+    };
+    sections.iter().enumerate().map(as_curve).collect()
 }

@@ -2,5 +2,6 @@
 
 pub(crate) mod curves_from_sections;
 pub(crate) mod ellipse;
+pub(crate) mod fit_sections;
 pub(crate) mod order_sections;
 pub(crate) mod sections_from_mesh;
