@@ -10,7 +10,7 @@ mod graphs;
 
 use graphs::Saved;
 use maquette_geometry::mesh::{Mesh, check};
-use maquette_graph::{Evaluation, Evaluator, Literal, OutcomeState, Report};
+use maquette_graph::{Evaluation, Evaluator, OutcomeState, Report};
 use maquette_nodes::wire;
 
 fn report<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str) -> &'a Report {
@@ -74,6 +74,7 @@ fn the_hip_in_segments_is_within_4_mm_and_keeps_its_corner() {
 #[test]
 fn open_strokes_are_fitted_and_a_surface_goes_through_them() {
     let saved = Saved::load("open-strokes");
+    assert_eq!(saved.results(), ["relief", "drawn lines", "fitted lines"]);
     let evaluation =
         saved.evaluate(&mut Evaluator::default(), &["relief", "skin", "fitted lines", "fitted", "surface"]);
     let stack = sections(&saved, &evaluation, "fitted");
