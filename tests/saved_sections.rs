@@ -10,8 +10,13 @@ mod graphs;
 
 use glam::DVec3;
 use graphs::Saved;
+<<<<<<< HEAD
 use maquette_geometry::mesh::{Mesh, MeshDistance, check};
 use maquette_graph::{Evaluation, Evaluator, Literal, OutcomeState, Report};
+=======
+use maquette_geometry::mesh::{Mesh, check};
+use maquette_graph::{Evaluation, Evaluator, OutcomeState, Report};
+>>>>>>> 65e52e710a559f5d68c28d0c3d5c00db97364289
 use maquette_nodes::wire;
 
 fn report<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str) -> &'a Report {
@@ -102,6 +107,7 @@ fn the_hip_in_segments_is_within_4_mm_and_keeps_its_corner() {
 #[test]
 fn open_strokes_are_fitted_and_a_surface_goes_through_them() {
     let saved = Saved::load("open-strokes");
+    assert_eq!(saved.results(), ["relief", "drawn lines", "fitted lines"]);
     let evaluation =
         saved.evaluate(&mut Evaluator::default(), &["relief", "skin", "fitted lines", "fitted", "surface"]);
     let stack = sections(&saved, &evaluation, "fitted");
