@@ -9,6 +9,7 @@ mod frozen;
 mod generate;
 mod input;
 mod mesh;
+mod neighbours;
 mod output;
 mod placement;
 mod primitive;
@@ -27,6 +28,8 @@ use maquette_graph::{Catalogue, CatalogueError, NodeKind};
 /// `tests/every_node.rs`.
 fn kinds() -> Vec<NodeKind> {
     vec![
+        curve::boundary_of::kind(),
+        curve::draw_on_surface::kind(),
         curve::join::kind(),
         curve::mirror::kind(),
         curve::pick::kind(),
@@ -35,12 +38,15 @@ fn kinds() -> Vec<NodeKind> {
         curve::sort::kind(),
         curve::transform::kind(),
         deform::deform_by_cross_section::kind(),
+        generate::blend::kind(),
         generate::detail_generator::kind(),
         input::import_curves::kind(),
         input::import_mesh::kind(),
         input::import_skeleton::kind(),
         input::sketch::kind(),
         mesh::caps::kind(),
+        mesh::cut_with_curve::kind(),
+        mesh::cut_with_plane::kind(),
         mesh::join_meshes::kind(),
         mesh::join_parts::kind(),
         mesh::mirror_mesh::kind(),
@@ -70,6 +76,15 @@ pub fn catalogue() -> Result<Catalogue, CatalogueError> {
     catalogue.conversion::<wire::Curves, wire::Curve>(|curves| match curves.0.as_slice() {
         [curve] => Ok(wire::Curve(curve.clone())),
         several => Err(format!("{} curves arrive where one is wanted: choose it with a `pick` node", several.len())),
+    })?;
+    catalogue.conversion::<wire::Borders, wire::Curves>(|borders| {
+        Ok(wire::Curves(borders.0.iter().map(|border| border.curve().clone()).collect()))
+    })?;
+    catalogue.conversion::<wire::Mesh, wire::Shape>(|mesh| Ok(wire::Shape::Mesh(mesh.clone())))?;
+    catalogue.conversion::<wire::Surface, wire::Shape>(|surface| Ok(wire::Shape::Surface(surface.clone())))?;
+    catalogue.conversion::<wire::Sections, wire::Shape>(|sections| Ok(wire::Shape::Sections(sections.clone())))?;
+    catalogue.collect::<wire::Borders, wire::Borders>(|lists| {
+        Ok(wire::Borders(lists.iter().flat_map(|list| list.0.iter().cloned()).collect()))
     })?;
     catalogue.list::<wire::Curves, wire::Curve>(
         |curves| curves.0.iter().cloned().map(wire::Curve).collect(),

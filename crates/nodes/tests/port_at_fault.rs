@@ -123,7 +123,7 @@ fn detail_generator() {
     let run = |rails: wire::Curves, closed: Option<Vec<Curve>>, settings: Vec<(&'static str, Literal)>| Wiring {
         kind: "detail-generator",
         links: std::iter::once(("rails", constant("drawn", rails)))
-            .chain(closed.map(|closed| ("closed", constant("loops", wire::Curves(closed)))))
+            .chain(closed.map(|closed| ("profiles", constant("loops", wire::Curves(closed)))))
             .collect(),
         settings,
     };
@@ -131,12 +131,18 @@ fn detail_generator() {
     let rings = || vec![ring("bottom", 1.0, 0.0), ring("top", 1.0, 2.0)];
     run(rails([0, 2, 3, 1]), None, vec![]).blames("rails", "pass them through `sort`");
     run(ordered(), Some(rings()), vec![("sections", Literal::Integer(3))]).blames("sections", "at least 4");
-    run(ordered(), Some(rings().into_iter().map(Curve::reversed).collect()), vec![]).blames("closed", "reverse it");
-    run(ordered(), Some(rings()[..1].to_vec()), vec![]).blames("closed", "4 open and 1 closed");
-    run(ordered(), None, vec![("case", text("between-closed"))]).blames("closed", "connect both");
-    run(ordered(), Some(ordered().0[..2].to_vec()), vec![]).blames("closed", "is open");
+    run(ordered(), Some(rings().into_iter().map(Curve::reversed).collect()), vec![]).blames("profiles", "reverse it");
+    run(ordered(), Some(rings()[..1].to_vec()), vec![]).blames("rails", "the point where the rails meet");
+    run(ordered(), Some(vec![ring("bottom", 1.0, 0.0), ordered().0[0].clone()]), vec![])
+        .blames("profiles", "all open or all closed");
+    let lone = wire::Curves(ordered().0[..1].to_vec());
+    run(lone, Some(rings()), vec![]).blames("profiles", "draw at least 2 rails");
+    run(ordered(), None, vec![("case", text("between-closed"))]).blames("profiles", "at least 2 needed");
+    run(wire::Curves::default(), Some(rings()), vec![]).blames("rails", "`blend` node");
+    let forced = vec![("case", text("between-closed"))];
+    run(ordered(), Some(ordered().0[..2].to_vec()), forced).blames("profiles", "is open");
     let far = rings().into_iter().map(|ring| ring.map(|p| p * 1e101).unwrap()).collect();
-    run(ordered(), Some(far), vec![]).blames("closed", "scale it down");
+    run(ordered(), Some(far), vec![]).blames("profiles", "scale it down");
     assert!(run(ordered(), Some(rings()), vec![]).run().unwrap().warnings.is_empty());
 }
 
