@@ -8,8 +8,9 @@
 
 mod graphs;
 
+use glam::DVec3;
 use graphs::Saved;
-use maquette_geometry::mesh::{Mesh, check};
+use maquette_geometry::mesh::{Mesh, MeshDistance, check};
 use maquette_graph::{Evaluation, Evaluator, OutcomeState, Report};
 use maquette_nodes::wire;
 
@@ -54,6 +55,33 @@ fn the_forearm_is_eight_generalized_ellipses() {
     // A mesh of the same accuracy has ten times as many numbers.
     let numbers = figure(&saved, &evaluation, "surface", "constants");
     assert!(3.0 * skin.positions().len() as f64 > 10.0 * numbers, "{numbers}");
+}
+
+#[test]
+fn the_leg_is_cut_from_its_template_along_the_bones() {
+    let saved = Saved::load("from-template");
+    let evaluation = saved.evaluate(&mut Evaluator::default(), &["leg", "skin", "section lines"]);
+    let template = &evaluation.value::<wire::Mesh>(saved.node("template"), "mesh").unwrap().0;
+    let distance = MeshDistance::new(template).unwrap();
+    let cut = &evaluation.value::<wire::Curves>(saved.node("cut"), "curves").unwrap().0;
+    assert_eq!((cut.len(), figure(&saved, &evaluation, "cut", "missed")), (12, 0.0));
+    assert!(figure(&saved, &evaluation, "cut", "largest-offset") < 0.03);
+    for curve in cut {
+        assert!(curve.points().iter().all(|p| distance.nearest(*p).distance < 1e-6), "{}", curve.name());
+    }
+    let of = |name: &str| figure(&saved, &evaluation, "fitted", name);
+    assert!(of("mean") <= 0.01 && of("max") <= 0.025 && of("mean-harmonics") <= 4.0);
+    // The lids apart, the surface is that of the template: a loft by straight lines is within 2 mm at 95 %.
+    let skin = sound(&saved, &evaluation, "skin", true);
+    let lids = [cut.first().unwrap(), cut.last().unwrap()].map(|curve| {
+        let centre = curve.points().iter().sum::<DVec3>() / curve.points().len() as f64;
+        (centre, curve.area_vector().normalize())
+    });
+    let on_lid = |p: &&DVec3| lids.iter().any(|(centre, normal)| (**p - *centre).dot(*normal).abs() < 2e-3);
+    let mut off: Vec<f64> =
+        skin.positions().iter().filter(|p| !on_lid(p)).map(|p| distance.nearest(*p).distance).collect();
+    off.sort_by(f64::total_cmp);
+    assert!(off.len() > 1000 && off[off.len() * 95 / 100] < 2e-3, "{} m", off[off.len() * 95 / 100]);
 }
 
 #[test]
