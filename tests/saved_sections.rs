@@ -40,12 +40,16 @@ fn sound<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str, closed: bool
 #[test]
 fn the_forearm_is_eight_generalized_ellipses() {
     let saved = Saved::load("forearm");
-    let evaluation = saved.evaluate(&mut Evaluator::default(), &["forearm", "skin", "fitted", "surface"]);
+    let evaluation = saved.evaluate(&mut Evaluator::default(), &["forearm", "skin", "fit", "fitted", "surface"]);
     let of = |name: &str| figure(&saved, &evaluation, "fitted", name);
     assert_eq!(sections(&saved, &evaluation, "fitted").len(), 8);
     // The tolerances of the thesis (3.13), and fewer harmonics than it says limbs need.
     assert!(of("mean") <= 0.01 && of("max") <= 0.025 && of("mean-harmonics") <= 4.0);
     assert!(of("largest-distance") < 2e-3 && of("constants") < 200.0);
+    // By nearest points, both ways, no section is farther than at equal angles.
+    let nearest = |name: &str| figure(&saved, &evaluation, "fit", name);
+    assert!(nearest("max") <= of("max") && nearest("met") == 1.0 && nearest("largest-distance") > 5e-4);
+    assert_eq!(nearest("harmonics"), of("most-harmonics"));
     let skin = sound(&saved, &evaluation, "skin", true);
     assert!(figure(&saved, &evaluation, "skin", "deviation") <= 2e-4);
     // A mesh of the same accuracy has ten times as many numbers.
@@ -100,6 +104,7 @@ fn the_hip_in_segments_is_within_4_mm_and_keeps_its_corner() {
 #[test]
 fn open_strokes_are_fitted_and_a_surface_goes_through_them() {
     let saved = Saved::load("open-strokes");
+    assert_eq!(saved.results(), ["relief", "drawn lines", "fitted lines"]);
     let evaluation =
         saved.evaluate(&mut Evaluator::default(), &["relief", "skin", "fitted lines", "fitted", "surface"]);
     let stack = sections(&saved, &evaluation, "fitted");

@@ -104,23 +104,6 @@ fn test_catalogue() -> Catalogue {
     for (index, sections) in [flat, open, huge].into_iter().enumerate() {
         catalogue.register(constant(&format!("nasty-sections-{index}"), wire::Sections(sections))).unwrap();
     }
-    let border = |curve: Curve, direction: DVec3| {
-        let directions = vec![direction; curve.points().len()];
-        wire::Borders(vec![Border::new(curve, directions).unwrap()])
-    };
-    let nasty_borders = [
-        wire::Borders::default(),
-        border(rail("open", 0.0), DVec3::X),
-        border(circle("far", 1e200, 1e200), DVec3::Y),
-        border(circle("flat", 1e-200, 0.0), DVec3::Y),
-        wire::Borders([border(circle("a", 1.0, 0.0), DVec3::Y).0, border(circle("b", 2.0, 0.0), DVec3::Y).0].concat()),
-    ];
-    for (index, borders) in nasty_borders.into_iter().enumerate() {
-        catalogue.register(constant(&format!("nasty-borders-{index}"), borders)).unwrap();
-    }
-    catalogue.register(constant("good-borders", border(circle("ring", 1.0, 0.0), DVec3::Y))).unwrap();
-    catalogue.register(constant("good-shape", wire::Shape::Mesh(wire::Mesh::new(square())))).unwrap();
-    catalogue.register(constant("nasty-shape-0", wire::Shape::Mesh(wire::Mesh::new(Mesh::default())))).unwrap();
     let series = |coefficients: Vec<DVec3>, closed: bool| {
         let to = if closed { TAU } else { PI };
         let segment = EllipticSegment { from: 0.0, to, local: false, series: Series::new(coefficients).unwrap() };
@@ -172,21 +155,48 @@ fn test_catalogue() -> Catalogue {
     for (index, surface) in nasty_surfaces.into_iter().enumerate() {
         catalogue.register(constant(&format!("nasty-surface-{index}"), surface)).unwrap();
     }
-    let good = wire::EllipticSections::new(vec![ellipse(0.0, 1.0), ellipse(1.0, 1.2), ellipse(2.0, 1.0)]);
+    let met = wire::SectionFit {
+        mean: 0.001,
+        maximum: 0.002,
+        diagonal: 2.8,
+        met: true,
+        worst: DVec3::X,
+        worst_angle: 0.0,
+        worst_distance: 0.005,
+    };
+    let fitted = |height: f64, size: f64| wire::NamedSection { fit: Some(met.clone()), ..ellipse(height, size) };
+    let good = wire::EllipticSections::new(vec![fitted(0.0, 1.0), fitted(1.0, 1.2), fitted(2.0, 1.0)]);
     catalogue.register(constant("good-cross-sections", wire::CrossSections::Series(good.clone()))).unwrap();
     catalogue.register(constant("good-elliptic-sections", good)).unwrap();
     catalogue.register(constant("good-surface", wire::Surface::Series(vec![tall]))).unwrap();
+    let border = |curve: Curve, direction: DVec3| {
+        let directions = vec![direction; curve.points().len()];
+        wire::Borders(vec![Border::new(curve, directions).unwrap()])
+    };
+    let nasty_borders = [
+        wire::Borders::default(),
+        border(rail("open", 0.0), DVec3::X),
+        border(circle("far", 1e200, 1e200), DVec3::Y),
+        border(circle("flat", 1e-200, 0.0), DVec3::Y),
+        wire::Borders([border(circle("a", 1.0, 0.0), DVec3::Y).0, border(circle("b", 2.0, 0.0), DVec3::Y).0].concat()),
+    ];
+    for (index, borders) in nasty_borders.into_iter().enumerate() {
+        catalogue.register(constant(&format!("nasty-borders-{index}"), borders)).unwrap();
+    }
+    catalogue.register(constant("good-borders", border(circle("ring", 1.0, 0.0), DVec3::Y))).unwrap();
+    catalogue.register(constant("good-shape", wire::Shape::Mesh(wire::Mesh::new(square())))).unwrap();
+    catalogue.register(constant("nasty-shape-0", wire::Shape::Mesh(wire::Mesh::new(Mesh::default())))).unwrap();
     catalogue.register(constant("nasty-mesh-0", wire::Mesh::new(Mesh::default()))).unwrap();
     let rings = (0..5).map(|k| circle("", 1.0, f64::from(k))).collect();
-    catalogue.register(constant("rings", wire::Curves(rings))).unwrap();
-    catalogue.register(constant("wall", wire::Mesh::new(wall()))).unwrap();
+    catalogue.register(constant("for-order-sections-curves", wire::Curves(rings))).unwrap();
+    catalogue.register(constant("for-sections-from-mesh-mesh", wire::Mesh::new(wall()))).unwrap();
     let bone = Curve::new("bone", vec![DVec3::Y * 0.1, DVec3::Y * 1.9], false).unwrap();
-    catalogue.register(constant("bone", wire::Curve(bone))).unwrap();
+    catalogue.register(constant("for-sections-from-mesh-bone", wire::Curve(bone))).unwrap();
     catalogue.register(constant("good-curves", wire::Curves(four_rails()))).unwrap();
     let upright = circle("around", 0.5, 0.0).map(|p| DVec3::new(p.x, -p.z, 0.0)).unwrap();
     let over = Curve::new("over", vec![DVec3::splat(0.25), DVec3::splat(0.75)], false).unwrap();
-    catalogue.register(constant("over-the-square", wire::Curves(vec![over]))).unwrap();
-    catalogue.register(constant("around-a-corner", wire::Curve(upright))).unwrap();
+    catalogue.register(constant("for-draw-on-surface-strokes", wire::Curves(vec![over]))).unwrap();
+    catalogue.register(constant("for-cut-with-curve-stroke", wire::Curve(upright))).unwrap();
     catalogue.register(constant("good-curve", wire::Curve(circle("ring", 1.2, 1.25)))).unwrap();
     catalogue.register(constant("good-sections", wire::Sections(tube()))).unwrap();
     catalogue.register(constant("good-mesh", wire::Mesh::new(square()))).unwrap();
@@ -214,6 +224,16 @@ fn shipped() -> Vec<String> {
     catalogue.kinds().filter(|kind| !kind.has_body()).map(|kind| kind.name().to_owned()).collect()
 }
 
+/// Whether an input that may stay unconnected is linked all the same: the node makes nothing of nothing.
+fn wanted(kind: &str, input: &str) -> bool {
+    match kind {
+        // One surface twice makes no chain.
+        "join-surfaces" => input == "a",
+        "edit-section" => input == "contour",
+        kind => kind.starts_with("join"),
+    }
+}
+
 /// A graph with one node of the kind under test, everything it needs linked or set.
 fn sample(catalogue: &Catalogue, kind: &str, folder: &Path) -> (Graph, NodeId) {
     let mut graph = Graph::new();
@@ -221,15 +241,11 @@ fn sample(catalogue: &Catalogue, kind: &str, folder: &Path) -> (Graph, NodeId) {
     let declared = catalogue.kind(kind).unwrap().clone();
     for input in declared.inputs() {
         match LiteralKind::of_wire(input.wire) {
-            None if !input.optional || (kind.starts_with("join") && (kind != "join-surfaces" || input.name == "a")) => {
-                let name = match kind {
-                    // What misses the mesh is an error.
-                    "draw-on-surface" if input.name == "strokes" => "over-the-square".to_owned(),
-                    "cut-with-curve" if input.name == "stroke" => "around-a-corner".to_owned(),
-                    "order-sections" if input.name == "curves" => "rings".to_owned(),
-                    "sections-from-mesh" if input.name == "mesh" => "wall".to_owned(),
-                    "sections-from-mesh" if input.name == "bone" => "bone".to_owned(),
-                    _ => constants(catalogue, input.wire, "good").first().unwrap().clone(),
+            None if !input.optional || wanted(kind, &input.name) => {
+                let own = format!("for-{kind}-{}", input.name);
+                let name = match catalogue.kind(&own) {
+                    Some(_) => own,
+                    None => constants(catalogue, input.wire, "good").first().unwrap().clone(),
                 };
                 let source = graph.find(&name).unwrap_or_else(|| graph.add(catalogue, &name, &name).unwrap());
                 graph.connect(catalogue, source, "out", node, &input.name).unwrap();
@@ -264,7 +280,6 @@ fn evaluate(catalogue: &Catalogue, graph: &Graph, node: NodeId, folder: &Path) -
 fn every_file_is_a_registered_kind_of_its_name() {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut files = BTreeSet::new();
-    // The wire types and how they are frozen are no kinds.
     let holds_kinds = |path: &Path| path.is_dir() && !path.ends_with("wire") && !path.ends_with("frozen");
     for folder in std::fs::read_dir(source).unwrap().map(|entry| entry.unwrap().path()).filter(|path| holds_kinds(path))
     {

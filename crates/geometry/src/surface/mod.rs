@@ -2,6 +2,7 @@
 
 pub mod analytic;
 mod cap;
+pub mod continuity;
 pub mod fairness;
 mod grid;
 mod knots;

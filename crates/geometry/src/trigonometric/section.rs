@@ -218,6 +218,13 @@ impl EllipticSection {
         Ok(Self { frame, closed: self.closed, segments })
     }
 
+    /// The same frame and ranges with other series, one a segment.
+    pub(super) fn with_series(&self, series: impl Iterator<Item = super::Series>) -> Self {
+        let segments =
+            self.segments.iter().zip(series).map(|(segment, series)| EllipticSegment { series, ..segment.clone() });
+        Self { frame: self.frame, closed: self.closed, segments: segments.collect() }
+    }
+
     /// The same curve with at least `harmonics[i]` harmonics in segment `i`; segments beyond the list stay as they are.
     #[must_use]
     pub fn padded(mut self, harmonics: &[usize]) -> Self {
