@@ -48,7 +48,7 @@ fn capsule(rows: usize, nodes: usize) -> Sections {
 }
 
 fn measured(sections: &Sections, view: View, strokes: &[Curve]) -> SilhouetteReport {
-    let mesh = skin(sections, &SkinOptions::default()).unwrap();
+    let mesh = skin(sections, &SkinOptions::default(), &|_| true).unwrap();
     let outline = silhouette_of(&mesh, view, 0.0, &|_| true).unwrap();
     silhouette_report(&outline.curves, strokes, view, &|_| true).unwrap()
 }

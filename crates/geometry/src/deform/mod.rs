@@ -13,6 +13,6 @@ pub use contour_matching::Matching;
 pub use cross_section::{Continuity, CrossSectionOptions, Deformed, deform_by_cross_section};
 pub use cross_section_error::CrossSectionError;
 pub use silhouette::{
-    Silhouette, SilhouetteDeformed, SilhouetteDeformer, SilhouetteError, SilhouetteOptions, StrokeMatching, StrokesError,
+    Contact, Silhouette, SilhouetteDeformed, SilhouetteDeformer, SilhouetteError, SilhouetteOptions, StrokeMatching, StrokesError,
     ViewFit, deform_to_silhouette,
 };

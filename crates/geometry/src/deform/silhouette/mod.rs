@@ -1,6 +1,6 @@
 //! Deforming a stack of sections until its silhouettes are those sketched (thesis 5.1-5.5, paper 4).
 //!
-//! Each section is a closed beam ([`ClosedBeam`]) that is pinned where the silhouettes of the views touch it; what is
+//! Each section is a closed beam that is pinned where the silhouettes of the views touch it; what is
 //! solved for is the displacement, so that the section keeps its own shape. In a view only the coordinates that are seen
 //! there are displaced: the one across the stack by the two pins of that view, and the one along it by the pins of all
 //! views. A second view therefore moves the pins of the first only along the first one's direction of sight, whether both
@@ -11,6 +11,7 @@ mod deformed;
 mod error;
 mod outline;
 pub(crate) mod pair;
+mod ring;
 #[cfg(test)]
 mod tests;
 pub(crate) mod track;
@@ -20,14 +21,16 @@ use glam::{DVec2, DVec3};
 pub use deformed::{SilhouetteDeformed, ViewFit};
 pub use error::{SilhouetteError, StrokesError};
 pub use pair::Silhouette;
+pub use ring::Contact;
 pub use track::StrokeMatching;
 
 use self::columns::Columns;
 use self::deformed::Fits;
 use self::error::names;
 use self::pair::Pair;
+use self::ring::Ring;
 use self::track::Track;
-use crate::beam::{ClosedBeam, Stiffness};
+use crate::beam::Stiffness;
 use crate::sections::Sections;
 use crate::view::View;
 
@@ -38,15 +41,22 @@ pub struct SilhouetteOptions {
     pub stiffness: Stiffness,
     /// How points of the strokes find theirs on the stack.
     pub matching: StrokeMatching,
+    /// How sections touch the strokes.
+    pub contact: Contact,
     /// Whether, with strokes of one view, the rails of the sections keep their place along the stack, so that silhouettes
     /// of an earlier view stay exact. Rails on the pinned sides follow the strokes.
     pub hold_rails: bool,
 }
 
 impl Default for SilhouetteOptions {
-    /// The thesis' stiffness, matching by arc length, rails held.
+    /// The thesis' stiffness, matching by arc length, tangent contact, rails held.
     fn default() -> Self {
-        Self { stiffness: Stiffness::default(), matching: StrokeMatching::default(), hold_rails: true }
+        Self {
+            stiffness: Stiffness::default(),
+            matching: StrokeMatching::default(),
+            contact: Contact::default(),
+            hold_rails: true,
+        }
     }
 }
 
@@ -117,7 +127,8 @@ struct Prepared {
 #[derive(Clone, Debug)]
 struct Component {
     axis: DVec3,
-    beam: ClosedBeam,
+    ring: Ring,
+    columns: Vec<usize>,
     /// What moves each pin: a side of a view, or nothing.
     pins: Vec<Option<(usize, usize)>>,
 }
@@ -168,8 +179,8 @@ impl<'a> SilhouetteDeformer<'a> {
         }
         let component = |axis: DVec3, pins: &[(usize, Option<(usize, usize)>)]| {
             let columns: Vec<usize> = pins.iter().map(|pin| pin.0).collect();
-            let beam = ClosedBeam::new(nodes, &columns, options.stiffness)?;
-            Ok::<_, SilhouetteError>(Component { axis, beam, pins: pins.iter().map(|pin| pin.1).collect() })
+            let ring = Ring::new(nodes, &columns, options.contact, options.stiffness)?;
+            Ok::<_, SilhouetteError>(Component { axis, ring, columns, pins: pins.iter().map(|pin| pin.1).collect() })
         };
         let mut components = Vec::with_capacity(3);
         for (view, pair) in views.iter().zip(pinned.chunks_exact(2)) {
@@ -272,7 +283,19 @@ impl<'a> SilhouetteDeformer<'a> {
                 .iter()
                 .map(|pin| pin.map_or(0.0, |(view, side)| wanted(view, side).dot(component.axis)))
                 .collect();
-            for (point, moved) in row.iter_mut().zip(component.beam.solve(&values)?) {
+            // What the section still runs to the side of the direction of sight at the pins; held ones stay as they are.
+            let slope = |column: usize| {
+                let next = section[(column + 1) % section.len()];
+                let before = section[(column + section.len() - 1) % section.len()];
+                (before - next).dot(component.axis) / 2.0
+            };
+            let slopes: Vec<f64> = component
+                .columns
+                .iter()
+                .zip(&component.pins)
+                .map(|(column, pin)| pin.map_or(0.0, |_| slope(*column)))
+                .collect();
+            for (point, moved) in row.iter_mut().zip(component.ring.solve(&values, &slopes)?) {
                 *point += component.axis * moved;
             }
         }
