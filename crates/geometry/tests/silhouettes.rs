@@ -55,24 +55,37 @@ fn measured(sections: &Sections, view: View, strokes: &[Curve]) -> SilhouetteRep
 
 #[test]
 fn explore() {
-    for (part, wave) in [("left_leg", 0.0), ("torso", 0.0), ("neck", 0.0), ("head", 0.0), ("left_leg", 0.03), ("torso", 0.03), ("head", 0.015)] {
+    use maquette_geometry::deform::AxisShape;
+    for (part, wave) in [("head", 0.0), ("head", 0.015)] {
         let calm = |view: &str| -> Vec<Curve> {
             contours(part, view).iter().map(|c| if wave > 0.0 { smooth(c, wave).unwrap() } else { c.clone() }).collect()
         };
         let (front, side) = (calm("front"), calm("side"));
         let both = [Silhouette { view: View::FRONT, strokes: &front }, Silhouette { view: View::SIDE, strokes: &side }];
-        for rows in [64, 160] {
-            for matching in [StrokeMatching::ArcLength, StrokeMatching::Height] {
-                let start = if part == "head" { capsule(rows, 64) } else { cylinder(rows, 64) };
-                let aligned = align_primitive(&start, &both, &AlignOptions { matching, ..AlignOptions::default() }, &|_| true).unwrap();
+        for rows in [64, 160, 320] {
+            for axis in [AxisShape::Bent, AxisShape::Straight] {
+              for spare in [0, 1] {
+                let matching = StrokeMatching::ArcLength;
+                let start = if spare == 0 { capsule(rows, 64) } else { primitive(rows, 64, |t| if t == 1.0 { 0.0 } else {0.5 * (1.0 - t.powi(3)).sqrt()}, |t| t) };
+                let aligned = align_primitive(&start, &both, &AlignOptions { matching, axis, ..AlignOptions::default() }, &|_| true).unwrap();
                 let options = SilhouetteOptions { matching, ..SilhouetteOptions::default() };
                 let made = deform_to_silhouette(&aligned.sections, &both, &options, &|_| true).unwrap();
                 let (f, s) = (measured(&made.sections, View::FRONT, &front), measured(&made.sections, View::SIDE, &side));
                 println!(
-                    "{part} {wave} {rows} {matching:?}: front {:.4}% at {} mean {:.5}%, side {:.4}% at {} mean {:.5}%, over {:.2e} {:.2e} {:?} {:?}",
+                    "{part} {wave} {rows} {axis:?} {spare}: front {:.4}% at {} mean {:.5}%, side {:.4}% at {} mean {:.5}%, over {:.2e} {:.2e} {:?} {:?}",
                     f.largest_percent(), f.at, f.mean_percent(), s.largest_percent(), s.at, s.mean_percent(),
                     made.views[0].overshoot, made.views[1].overshoot, made.warnings, aligned.warnings
                 );
+                if rows == 160 && wave == 0.0 && spare == 0 {
+                    let mesh = skin(&made.sections, &SkinOptions::default(), &|_| true).unwrap();
+                    let outline = silhouette_of(&mesh, View::SIDE, 0.0, &|_| true).unwrap();
+                    for p in outline.curves[0].points().iter().filter(|p| p.distance(DVec3::new(0.0, 1.486, 0.1414)) < 0.008) { println!("  out {:.5} {:.5}", p.z, p.y); }
+                    for p in side[0].points().iter().filter(|p| p.distance(DVec3::new(0.0, 1.486, 0.1414)) < 0.012) { println!("  stroke {:.5} {:.5}", p.z, p.y); }
+                    let col = made.views[1].columns;
+                    for s in made.sections.iter() { for c in col { if s[c].distance(DVec3::new(s[c].x, 1.486, 0.1414)) < 0.008 {
+                       println!("  col {c} {:?}", (-3i32..=3).map(|d| { let p = s[((c as i32 + d + 64) % 64) as usize]; format!("{:.4},{:.4}", p.z, p.y) }).collect::<Vec<_>>()); } } }
+                }
+              }
             }
         }
     }

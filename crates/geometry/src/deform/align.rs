@@ -450,3 +450,132 @@ fn straightened(curve: &Curve) -> Result<Curve, AlignError> {
     let at = |p: DVec3| middle + way * (p - middle).dot(way);
     Ok(Curve::new(curve.name(), vec![at(curve.start()), at(curve.end())], false)?)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use super::*;
+
+    fn stack(rows: usize, radius: impl Fn(f64) -> f64) -> Sections {
+        let ring = |k: usize| {
+            let y = k as f64 / (rows - 1) as f64;
+            let at = |j: u32| DQuat::from_rotation_y(TAU * f64::from(j) / 32.0) * DVec3::X * radius(y) + DVec3::Y * y;
+            (0..32).map(at).collect()
+        };
+        Sections::new((0..rows).map(ring).collect(), true, vec![0, 8]).unwrap()
+    }
+
+    fn stroke(at: impl Fn(f64) -> DVec3) -> Curve {
+        Curve::new("", (0..=100).map(|i| at(f64::from(i) / 100.0)).collect(), false).unwrap()
+    }
+
+    fn go(primitive: &Sections, silhouettes: &[(View, &[Curve])], options: &AlignOptions) -> Aligned {
+        let silhouettes: Vec<Silhouette<'_>> =
+            silhouettes.iter().map(|(view, strokes)| Silhouette { view: *view, strokes }).collect();
+        align_primitive(primitive, &silhouettes, options, &|_| true).unwrap()
+    }
+
+    #[test]
+    fn a_straight_limb_in_two_views() {
+        let front = [0.6, 0.2].map(|x| stroke(|t| DVec3::new(x, 1.0 + 2.0 * t, 0.0)));
+        let side = [-0.1, 0.2].map(|z| stroke(|t| DVec3::new(0.0, 1.0 + 2.0 * t, z)));
+        let cylinder = stack(11, |_| 0.5);
+        let made = go(&cylinder, &[(View::FRONT, &front), (View::SIDE, &side)], &AlignOptions::default());
+        assert!(made.half_size.distance(DVec2::new(0.2, 0.15)) < 1e-12 && made.warnings.is_empty());
+        assert_eq!(made.sections.rails(), [0, 8]);
+        for (k, section) in made.sections.iter().enumerate() {
+            let centre = DVec3::new(0.4, 1.0 + 0.2 * k as f64, 0.05);
+            for (j, point) in section.iter().enumerate() {
+                let from = cylinder.section(k)[j];
+                let wanted = centre + DVec3::new(from.x * 0.4, 0.0, from.z * 0.3);
+                assert!(point.distance(wanted) < 1e-12, "section {k}, point {j}: {point} {wanted}");
+            }
+        }
+        // By hand.
+        let options = AlignOptions {
+            offset: DVec3::new(0.1, 0.0, 0.0),
+            scale: DVec3::new(2.0, 0.5, 1.0),
+            twist: TAU / 4.0,
+            ..AlignOptions::default()
+        };
+        let made = go(&cylinder, &[(View::FRONT, &front), (View::SIDE, &side)], &options).sections;
+        assert!(made.centre(0).distance(DVec3::new(0.5, 1.5, 0.05)) < 1e-12);
+        assert!(made.centre(10).distance(DVec3::new(0.5, 2.5, 0.05)) < 1e-12);
+        let (low, high) = Curve::new("", made.section(3).to_vec(), true).unwrap().bounds();
+        assert!((high - low).distance(DVec3::new(0.8, 0.0, 0.3)) < 1e-12);
+        assert!((made.section(3)[0] - made.centre(3)).x.abs() < 1e-12, "turned by a quarter");
+    }
+
+    #[test]
+    fn a_bent_limb_is_followed_and_a_primitive_that_lies_is_raised() {
+        let ring = |r: f64| stroke(move |t| DVec3::new((TAU / 4.0 * t).cos() * r, (TAU / 4.0 * t).sin() * r, 0.3));
+        let front = [ring(1.2), ring(0.8)];
+        let upright = stack(41, |_| 0.5);
+        let made = go(&upright, &[(View::FRONT, &front)], &AlignOptions::default());
+        assert!(made.warnings.is_empty(), "{:?}", made.warnings);
+        for (k, section) in made.sections.iter().enumerate() {
+            let a = TAU / 4.0 * k as f64 / 40.0;
+            let (out, along) = (DVec3::new(a.cos(), a.sin(), 0.0), DVec3::new(-a.sin(), a.cos(), 0.0));
+            let centre = made.sections.centre(k);
+            assert!(centre.distance(out + DVec3::Z * 0.3) < 2e-3, "section {k}: {centre}");
+            for point in section {
+                assert!((*point - centre).dot(along).abs() < 5e-3, "section {k} is across the axis");
+                assert!(((*point - centre).length() - 0.2).abs() < 1e-9);
+            }
+        }
+        let rows = upright.iter().map(|row| row.iter().map(|p| DVec3::new(p.x, -p.z, p.y)).collect());
+        let lying = Sections::new(rows.collect(), true, vec![]).unwrap();
+        let raised = go(&lying, &[(View::FRONT, &front)], &AlignOptions::default()).sections;
+        for k in 0..41 {
+            assert!(raised.centre(k).distance(made.sections.centre(k)) < 1e-12);
+        }
+        let straight = AlignOptions { axis: AxisShape::Straight, ..AlignOptions::default() };
+        let made = go(&upright, &[(View::FRONT, &front)], &straight);
+        let way = (made.sections.centre(40) - made.sections.centre(0)).normalize();
+        assert!(way.distance(DVec3::new(-1.0, 1.0, 0.0).normalize()) < 1e-12);
+    }
+
+    #[test]
+    fn taper_follows_the_width() {
+        let front = [1.0, -1.0].map(|s| stroke(move |t| DVec3::new(s * (0.4 - 0.2 * t), t, 0.0)));
+        let width = |made: &Aligned, k: usize| made.sections.section(k)[0].distance(made.sections.section(k)[16]);
+        let keep = go(&stack(5, |_| 1.0), &[(View::FRONT, &front)], &AlignOptions::default());
+        assert!((0..5).all(|k| (width(&keep, k) - 0.6).abs() < 1e-12));
+        let follow = AlignOptions { taper: 1.0, ..AlignOptions::default() };
+        let made = go(&stack(5, |_| 1.0), &[(View::FRONT, &front)], &follow);
+        for k in 0..5 {
+            assert!((width(&made, k) - (0.8 - 0.1 * k as f64)).abs() < 1e-12);
+        }
+        // On the mean a primitive of any profile is as wide as the silhouettes.
+        let spindle = go(&stack(101, |y| y * (1.0 - y)), &[(View::FRONT, &front)], &AlignOptions::default());
+        let mean: f64 = (1..=100).map(|k| (width(&spindle, k) + width(&spindle, k - 1)) / 200.0).sum();
+        assert!((mean - 0.6).abs() < 1e-12, "{mean}");
+    }
+
+    #[test]
+    fn what_cannot_be_aligned_is_refused() {
+        let front = [0.2, -0.2].map(|x| stroke(|t| DVec3::new(x, t, 0.0)));
+        let silhouettes = [Silhouette { view: View::FRONT, strokes: &front }];
+        let error = |primitive: &Sections, options: &AlignOptions| {
+            align_primitive(primitive, &silhouettes, options, &|_| true).unwrap_err()
+        };
+        let cylinder = stack(5, |_| 1.0);
+        let options = AlignOptions::default();
+        for bad in [
+            AlignOptions { taper: 1.5, ..options },
+            AlignOptions { scale: DVec3::new(1.0, 0.0, 1.0), ..options },
+            AlignOptions { twist: f64::NAN, ..options },
+        ] {
+            assert!(matches!(error(&cylinder, &bad), AlignError::Option { .. }));
+        }
+        assert_eq!(error(&stack(5, |_| 0.0), &options), AlignError::NoWidth);
+        let ring = cylinder.section(0).to_vec();
+        let flat = Sections::new(vec![ring.clone(), ring], true, vec![]).unwrap();
+        assert_eq!(error(&flat, &options), AlignError::NoAxis);
+        let none = align_primitive(&cylinder, &[], &options, &|_| true);
+        assert!(matches!(none, Err(AlignError::Strokes(StrokesError::Views { found: 0 }))));
+        let stopped = align_primitive(&cylinder, &silhouettes, &options, &|_| false);
+        assert_eq!(stopped, Err(AlignError::Cancelled));
+    }
+}

@@ -123,6 +123,9 @@ struct Prepared {
     bounds: [DVec2; 2],
 }
 
+/// A pinned column, and the view and side of the stroke that moves it, or none where it is held.
+type Pin = (usize, Option<(usize, usize)>);
+
 /// A direction in which points are displaced.
 #[derive(Clone, Debug)]
 struct Component {
@@ -164,12 +167,12 @@ impl<'a> SilhouetteDeformer<'a> {
             prepared.push(Prepared { view: *view, columns: sides, shares, bounds });
         }
         let nodes = sections.nodes();
-        let pinned: Vec<(usize, Option<(usize, usize)>)> = prepared
+        let pinned: Vec<Pin> = prepared
             .iter()
             .enumerate()
             .flat_map(|(view, p)| [0, 1].map(|side| (p.columns[side], Some((view, side)))))
             .collect();
-        let different = |pins: &[(usize, Option<(usize, usize)>)]| {
+        let different = |pins: &[Pin]| {
             let mut columns: Vec<usize> = pins.iter().map(|pin| pin.0).collect();
             columns.sort_unstable();
             columns.windows(2).all(|pair| pair[0] < pair[1])
@@ -177,7 +180,7 @@ impl<'a> SilhouetteDeformer<'a> {
         if !different(&pinned) {
             return Err(SilhouetteError::NoSides { nodes });
         }
-        let component = |axis: DVec3, pins: &[(usize, Option<(usize, usize)>)]| {
+        let component = |axis: DVec3, pins: &[Pin]| {
             let columns: Vec<usize> = pins.iter().map(|pin| pin.0).collect();
             let ring = Ring::new(nodes, &columns, options.contact, options.stiffness)?;
             Ok::<_, SilhouetteError>(Component { axis, ring, columns, pins: pins.iter().map(|pin| pin.1).collect() })
@@ -193,6 +196,9 @@ impl<'a> SilhouetteDeformer<'a> {
             held.dedup();
             held.retain(|rail| pinned.iter().all(|pin| pin.0 != *rail));
             all.extend(held.into_iter().map(|rail| (rail, None)));
+        }
+        if options.contact == Contact::Tangent {
+            all = level_beside(&all, nodes);
         }
         components.push(component(along, &all)?);
         Ok(Self { sections, views: prepared, components, matching: options.matching, along })
@@ -271,17 +277,15 @@ impl<'a> SilhouetteDeformer<'a> {
         if one_point && (self.views.len() == 2 || self.sections.is_pole(index)) {
             return Ok(vec![self.tip(section[0], targets, fits); section.len()]);
         }
-        let wanted = |view: usize, side: usize| {
-            let prepared = &self.views[view];
-            let from = section[prepared.columns[side]];
-            prepared.view.lift(targets[view][side] - prepared.view.flat(from))
+        let wanted = |column: usize, view: usize, side: usize| {
+            let view_of = self.views[view].view;
+            view_of.lift(targets[view][side] - view_of.flat(section[column]))
         };
         let mut row = section.to_vec();
         for component in &self.components {
-            let values: Vec<f64> = component
-                .pins
-                .iter()
-                .map(|pin| pin.map_or(0.0, |(view, side)| wanted(view, side).dot(component.axis)))
+            let pins = || component.columns.iter().zip(&component.pins);
+            let values: Vec<f64> = pins()
+                .map(|(column, pin)| pin.map_or(0.0, |(view, side)| wanted(*column, view, side).dot(component.axis)))
                 .collect();
             // What the section still runs to the side of the direction of sight at the pins; held ones stay as they are.
             let slope = |column: usize| {
@@ -289,12 +293,7 @@ impl<'a> SilhouetteDeformer<'a> {
                 let before = section[(column + section.len() - 1) % section.len()];
                 (before - next).dot(component.axis) / 2.0
             };
-            let slopes: Vec<f64> = component
-                .columns
-                .iter()
-                .zip(&component.pins)
-                .map(|(column, pin)| pin.map_or(0.0, |_| slope(*column)))
-                .collect();
+            let slopes: Vec<f64> = pins().map(|(column, pin)| pin.map_or(0.0, |_| slope(*column))).collect();
             for (point, moved) in row.iter_mut().zip(component.ring.solve(&values, &slopes)?) {
                 *point += component.axis * moved;
             }
@@ -332,6 +331,21 @@ impl Prepared {
         }
         Ok(())
     }
+}
+
+/// Share of the way around a section on each side of a pin on which a section that touches a stroke stays level, so that
+/// it does not fill the notches of a stroke, such as those between lips, where the other pins are higher or lower.
+const LEVEL: f64 = 1.0 / 20.0;
+
+/// Pins along the stack with the points beside each, which do as it does. There are fewer where pins are close.
+fn level_beside(pins: &[Pin], nodes: usize) -> Vec<Pin> {
+    let mut columns: Vec<usize> = pins.iter().map(|pin| pin.0).collect();
+    columns.sort_unstable();
+    let next = columns.iter().cycle().skip(1);
+    let gaps = columns.iter().zip(next).map(|(one, other)| (other + nodes - one - 1) % nodes + 1);
+    let reach = ((LEVEL * nodes as f64) as usize).min(gaps.min().unwrap_or(nodes).saturating_sub(1) / 4);
+    let beside = |column: usize| (0..=2 * reach).map(move |d| (column + nodes + d - reach) % nodes);
+    pins.iter().flat_map(|(column, pin)| beside(*column).map(|column| (column, *pin))).collect()
 }
 
 /// The axis along the stack that is seen in all views: across both directions of sight, or, of one view, the axis of the
