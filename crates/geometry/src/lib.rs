@@ -5,6 +5,7 @@
 //! ends in `_degrees`. All mathematics is `f64`.
 
 pub mod beam;
+pub mod border;
 pub mod curve;
 pub mod deform;
 pub mod file_format;

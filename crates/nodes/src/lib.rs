@@ -4,24 +4,30 @@
 mod affine;
 mod curve;
 mod deform;
+mod fitting;
 mod frozen;
 mod generate;
 mod input;
 mod mesh;
+mod neighbours;
 mod output;
 mod section;
 mod stiffness;
 mod surface;
+mod surfacing;
 mod view_plane;
 pub mod wire;
 
 use maquette_geometry::mesh::join;
+use maquette_geometry::sections::Sections;
 use maquette_graph::{Catalogue, CatalogueError, NodeKind};
 
 /// Every node kind of this library, in the order of the source tree. A file that is not listed fails
 /// `tests/every_node.rs`.
 fn kinds() -> Vec<NodeKind> {
     vec![
+        curve::boundary_of::kind(),
+        curve::draw_on_surface::kind(),
         curve::join::kind(),
         curve::mirror::kind(),
         curve::pick::kind(),
@@ -30,17 +36,23 @@ fn kinds() -> Vec<NodeKind> {
         curve::sort::kind(),
         curve::transform::kind(),
         deform::deform_by_cross_section::kind(),
+        generate::blend::kind(),
         generate::detail_generator::kind(),
         input::import_curves::kind(),
         input::import_mesh::kind(),
         input::sketch::kind(),
+        mesh::cut_with_curve::kind(),
+        mesh::cut_with_plane::kind(),
         mesh::join_meshes::kind(),
         mesh::mirror_mesh::kind(),
         mesh::transform_mesh::kind(),
         output::curves_out::kind(),
         output::mesh_out::kind(),
         section::curves_from_sections::kind(),
+        section::fit_sections::kind(),
+        surface::join_surfaces::kind(),
         surface::surface_from_cross_sections::kind(),
+        surface::tessellate::kind(),
     ]
 }
 
@@ -54,6 +66,15 @@ pub fn catalogue() -> Result<Catalogue, CatalogueError> {
     catalogue.conversion::<wire::Curves, wire::Curve>(|curves| match curves.0.as_slice() {
         [curve] => Ok(wire::Curve(curve.clone())),
         several => Err(format!("{} curves arrive where one is wanted: choose it with a `pick` node", several.len())),
+    })?;
+    catalogue.conversion::<wire::Borders, wire::Curves>(|borders| {
+        Ok(wire::Curves(borders.0.iter().map(|border| border.curve().clone()).collect()))
+    })?;
+    catalogue.conversion::<wire::Mesh, wire::Shape>(|mesh| Ok(wire::Shape::Mesh(mesh.clone())))?;
+    catalogue.conversion::<wire::Surface, wire::Shape>(|surface| Ok(wire::Shape::Surface(surface.clone())))?;
+    catalogue.conversion::<wire::Sections, wire::Shape>(|sections| Ok(wire::Shape::Sections(sections.clone())))?;
+    catalogue.collect::<wire::Borders, wire::Borders>(|lists| {
+        Ok(wire::Borders(lists.iter().flat_map(|list| list.0.iter().cloned()).collect()))
     })?;
     catalogue.list::<wire::Curves, wire::Curve>(
         |curves| curves.0.iter().cloned().map(wire::Curve).collect(),
@@ -71,9 +92,28 @@ pub fn catalogue() -> Result<Catalogue, CatalogueError> {
     catalogue.conversion::<wire::EllipticSections, wire::CrossSections>(|series| {
         Ok(wire::CrossSections::Series(series.clone()))
     })?;
+    catalogue
+        .conversion::<wire::EllipticSections, wire::Curves>(|series| fitting::as_curves(&series.0).map(wire::Curves))?;
+    catalogue
+        .conversion::<wire::Sections, wire::Curves>(|sections| sections_as_curves(&sections.0).map(wire::Curves))?;
     frozen::register(&mut catalogue);
     for kind in kinds() {
         catalogue.register(kind)?;
     }
     Ok(catalogue)
+}
+
+/// Sections of points as curves of their points.
+fn sections_as_curves(sections: &Sections) -> Result<Vec<maquette_geometry::curve::Curve>, String> {
+    let as_curve = |(index, points): (usize, &[glam::DVec3])| {
+        maquette_geometry::curve::Curve::new(format!("section {index}"), points.to_vec(), sections.is_closed()).map_err(
+            |error| {
+                format!(
+                    "section {index} is no curve: {error}; a `curves-from-sections` node leaves out sections that are \
+                     a point"
+                )
+            },
+        )
+    };
+    sections.iter().enumerate().map(as_curve).collect()
 }

@@ -1,6 +1,7 @@
 //! Polygon meshes and what can be measured on them.
 
 pub mod check;
+pub mod cut;
 pub mod distance;
 pub(crate) mod ear_clipping;
 pub mod measure;
@@ -9,6 +10,7 @@ pub mod ray;
 mod silhouette;
 mod silhouette_report;
 pub mod slice;
+pub mod stroke;
 pub mod topology;
 pub mod transform;
 mod triangle_tree;

@@ -33,7 +33,7 @@ mod solve;
 mod tests;
 
 pub use error::{FitError, FitWarning};
-pub use fit::{fit, fit_sections};
+pub use fit::{fit, fit_sections, fit_sections_while};
 pub use measure::NearestPoint;
 pub use options::{Angles, Continuity, FitOptions, Harmonics, Joint, LocalAngles, Sampling, Solution, Split, Start};
 pub use order_search::{Errors, Found, Tolerances, smallest_harmonics};

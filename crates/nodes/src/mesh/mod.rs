@@ -3,6 +3,8 @@
 use maquette_geometry::mesh::TransformError;
 use maquette_graph::NodeError;
 
+pub(crate) mod cut_with_curve;
+pub(crate) mod cut_with_plane;
 pub(crate) mod join_meshes;
 pub(crate) mod mirror_mesh;
 pub(crate) mod transform_mesh;

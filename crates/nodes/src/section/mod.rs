@@ -1,3 +1,4 @@
 //! Nodes that work on sections.
 
 pub(crate) mod curves_from_sections;
+pub(crate) mod fit_sections;
