@@ -151,8 +151,8 @@ fn symmetry_in_gives_symmetry_out() {
 fn a_bent_limb_and_a_stroke_that_folds_back_are_followed() {
     // A quarter of a ring, its inner side with a hook that folds back in height.
     let centre = |a: f64| DVec3::new(a.cos() - 1.0, a.sin(), 0.0);
-    let rows = (0..48).map(|k| {
-        let a = FRAC_PI_2 * f64::from(k) / 47.0;
+    let rows = (0..192).map(|k| {
+        let a = FRAC_PI_2 * f64::from(k) / 191.0;
         let out = DVec3::new(a.cos(), a.sin(), 0.0);
         (0..32)
             .map(|j| {
@@ -167,7 +167,7 @@ fn a_bent_limb_and_a_stroke_that_folds_back_are_followed() {
         DVec3::new(a.cos(), a.sin(), 0.0) * (1.25 + 0.05 * (7.0 * a).sin()) - DVec3::X
     });
     let inner = stroke("inner", 300, |t| {
-        let a = FRAC_PI_2 * t + 0.12 * (TAU * 2.0 * t).sin();
+        let a = FRAC_PI_2 * t + 0.2 * (TAU * 2.0 * t).sin();
         DVec3::new(a.cos(), a.sin(), 0.0) * (0.75 - 0.06 * (PI * t).sin()) - DVec3::X
     });
     let folds = inner.points().windows(2).filter(|w| w[1].y < w[0].y).count();

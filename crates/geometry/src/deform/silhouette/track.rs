@@ -155,7 +155,7 @@ mod tests {
     fn shares_of_the_length_and_of_the_height() {
         let bent = line(&[(0.0, 0.0), (3.0, 0.0), (3.0, 1.0), (3.0, 4.0)]);
         let arc = Track::new(&bent, StrokeMatching::ArcLength, DVec2::Y).unwrap();
-        assert_eq!(arc.at(0.5), DVec2::new(3.0, 0.5));
+        assert!(arc.at(0.5).distance(DVec2::new(3.0, 0.5)) < 1e-15);
         assert_eq!((arc.at(-1.0), arc.at(2.0)), (bent[0], bent[3]));
         let height = Track::new(&bent, StrokeMatching::Height, DVec2::Y).unwrap();
         assert_eq!(height.at(0.5), DVec2::new(3.0, 2.0));
