@@ -30,7 +30,9 @@ fn primitive(rows: usize, nodes: usize, radius: impl Fn(f64) -> f64, height: imp
     let ring = |k: usize| {
         let t = k as f64 / (rows - 1) as f64;
         (0..nodes)
-            .map(|j| DQuat::from_rotation_y(TAU * j as f64 / nodes as f64) * DVec3::X * radius(t) + DVec3::Y * height(t))
+            .map(|j| {
+                DQuat::from_rotation_y(TAU * j as f64 / nodes as f64) * DVec3::X * radius(t) + DVec3::Y * height(t)
+            })
             .collect()
     };
     Sections::new((0..rows).map(ring).collect(), true, vec![]).unwrap()
@@ -64,28 +66,69 @@ fn explore() {
         let both = [Silhouette { view: View::FRONT, strokes: &front }, Silhouette { view: View::SIDE, strokes: &side }];
         for rows in [64, 160, 320] {
             for axis in [AxisShape::Bent, AxisShape::Straight] {
-              for spare in [0, 1] {
-                let matching = StrokeMatching::ArcLength;
-                let start = if spare == 0 { capsule(rows, 64) } else { primitive(rows, 64, |t| if t == 1.0 { 0.0 } else {0.5 * (1.0 - t.powi(3)).sqrt()}, |t| t) };
-                let aligned = align_primitive(&start, &both, &AlignOptions { matching, axis, ..AlignOptions::default() }, &|_| true).unwrap();
-                let options = SilhouetteOptions { matching, ..SilhouetteOptions::default() };
-                let made = deform_to_silhouette(&aligned.sections, &both, &options, &|_| true).unwrap();
-                let (f, s) = (measured(&made.sections, View::FRONT, &front), measured(&made.sections, View::SIDE, &side));
-                println!(
-                    "{part} {wave} {rows} {axis:?} {spare}: front {:.4}% at {} mean {:.5}%, side {:.4}% at {} mean {:.5}%, over {:.2e} {:.2e} {:?} {:?}",
-                    f.largest_percent(), f.at, f.mean_percent(), s.largest_percent(), s.at, s.mean_percent(),
-                    made.views[0].overshoot, made.views[1].overshoot, made.warnings, aligned.warnings
-                );
-                if rows == 160 && wave == 0.0 && spare == 0 {
-                    let mesh = skin(&made.sections, &SkinOptions::default(), &|_| true).unwrap();
-                    let outline = silhouette_of(&mesh, View::SIDE, 0.0, &|_| true).unwrap();
-                    for p in outline.curves[0].points().iter().filter(|p| p.distance(DVec3::new(0.0, 1.486, 0.1414)) < 0.008) { println!("  out {:.5} {:.5}", p.z, p.y); }
-                    for p in side[0].points().iter().filter(|p| p.distance(DVec3::new(0.0, 1.486, 0.1414)) < 0.012) { println!("  stroke {:.5} {:.5}", p.z, p.y); }
-                    let col = made.views[1].columns;
-                    for s in made.sections.iter() { for c in col { if s[c].distance(DVec3::new(s[c].x, 1.486, 0.1414)) < 0.008 {
-                       println!("  col {c} {:?}", (-3i32..=3).map(|d| { let p = s[((c as i32 + d + 64) % 64) as usize]; format!("{:.4},{:.4}", p.z, p.y) }).collect::<Vec<_>>()); } } }
+                for spare in [0, 1] {
+                    let matching = StrokeMatching::ArcLength;
+                    let start = if spare == 0 {
+                        capsule(rows, 64)
+                    } else {
+                        primitive(rows, 64, |t| if t == 1.0 { 0.0 } else { 0.5 * (1.0 - t.powi(3)).sqrt() }, |t| t)
+                    };
+                    let aligned = align_primitive(
+                        &start,
+                        &both,
+                        &AlignOptions { matching, axis, ..AlignOptions::default() },
+                        &|_| true,
+                    )
+                    .unwrap();
+                    let options = SilhouetteOptions { matching, ..SilhouetteOptions::default() };
+                    let made = deform_to_silhouette(&aligned.sections, &both, &options, &|_| true).unwrap();
+                    let (f, s) =
+                        (measured(&made.sections, View::FRONT, &front), measured(&made.sections, View::SIDE, &side));
+                    println!(
+                        "{part} {wave} {rows} {axis:?} {spare}: front {:.4}% at {} mean {:.5}%, side {:.4}% at {} mean {:.5}%, over {:.2e} {:.2e} {:?} {:?}",
+                        f.largest_percent(),
+                        f.at,
+                        f.mean_percent(),
+                        s.largest_percent(),
+                        s.at,
+                        s.mean_percent(),
+                        made.views[0].overshoot,
+                        made.views[1].overshoot,
+                        made.warnings,
+                        aligned.warnings
+                    );
+                    if rows == 160 && wave == 0.0 && spare == 0 {
+                        let mesh = skin(&made.sections, &SkinOptions::default(), &|_| true).unwrap();
+                        let outline = silhouette_of(&mesh, View::SIDE, 0.0, &|_| true).unwrap();
+                        for p in outline.curves[0]
+                            .points()
+                            .iter()
+                            .filter(|p| p.distance(DVec3::new(0.0, 1.486, 0.1414)) < 0.008)
+                        {
+                            println!("  out {:.5} {:.5}", p.z, p.y);
+                        }
+                        for p in side[0].points().iter().filter(|p| p.distance(DVec3::new(0.0, 1.486, 0.1414)) < 0.012)
+                        {
+                            println!("  stroke {:.5} {:.5}", p.z, p.y);
+                        }
+                        let col = made.views[1].columns;
+                        for s in made.sections.iter() {
+                            for c in col {
+                                if s[c].distance(DVec3::new(s[c].x, 1.486, 0.1414)) < 0.008 {
+                                    println!(
+                                        "  col {c} {:?}",
+                                        (-3i32..=3)
+                                            .map(|d| {
+                                                let p = s[((c as i32 + d + 64) % 64) as usize];
+                                                format!("{:.4},{:.4}", p.z, p.y)
+                                            })
+                                            .collect::<Vec<_>>()
+                                    );
+                                }
+                            }
+                        }
+                    }
                 }
-              }
             }
         }
     }

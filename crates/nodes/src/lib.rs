@@ -12,6 +12,7 @@ mod mesh;
 mod neighbours;
 mod output;
 mod section;
+mod silhouettes;
 mod stiffness;
 mod surface;
 mod surfacing;
@@ -35,7 +36,9 @@ fn kinds() -> Vec<NodeKind> {
         curve::smooth::kind(),
         curve::sort::kind(),
         curve::transform::kind(),
+        deform::align_primitive::kind(),
         deform::deform_by_cross_section::kind(),
+        deform::deform_to_silhouette::kind(),
         generate::blend::kind(),
         generate::detail_generator::kind(),
         input::import_curves::kind(),
@@ -45,6 +48,8 @@ fn kinds() -> Vec<NodeKind> {
         mesh::cut_with_plane::kind(),
         mesh::join_meshes::kind(),
         mesh::mirror_mesh::kind(),
+        mesh::silhouette_of::kind(),
+        mesh::silhouette_report::kind(),
         mesh::transform_mesh::kind(),
         output::curves_out::kind(),
         output::mesh_out::kind(),

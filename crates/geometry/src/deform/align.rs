@@ -297,10 +297,8 @@ fn medial_axes(
                 Track::new(side, matching, view.flat(along)).ok_or(AlignError::Level { view: view.name() })
             });
             let (left, right) = (left?, right?);
-            let ends: Vec<[DVec2; 2]> = (0..=POINTS)
-                .map(|k| k as f64 / POINTS as f64)
-                .map(|share| [left.at(share), right.at(share)])
-                .collect();
+            let ends: Vec<[DVec2; 2]> =
+                (0..=POINTS).map(|k| k as f64 / POINTS as f64).map(|share| [left.at(share), right.at(share)]).collect();
             let points: Vec<DVec2> = ends.iter().map(|[l, r]| l.midpoint(*r)).collect();
             let halves = (0..=POINTS)
                 .map(|k| {

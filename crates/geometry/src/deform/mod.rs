@@ -10,9 +10,12 @@ mod silhouette;
 
 pub use align::{AlignError, AlignOptions, Aligned, AxisShape, align_primitive};
 pub use contour_matching::Matching;
-pub use cross_section::{Continuity, CrossSectionOptions, Deformed, deform_by_cross_section};
+pub use cross_section::{
+    Continuity, CrossSectionOptions, Deformed, DeformedByAll, RangeBy, Replaced, deform_by_cross_section,
+    deform_by_cross_sections,
+};
 pub use cross_section_error::CrossSectionError;
 pub use silhouette::{
-    Contact, Silhouette, SilhouetteDeformed, SilhouetteDeformer, SilhouetteError, SilhouetteOptions, StrokeMatching, StrokesError,
-    ViewFit, deform_to_silhouette,
+    Contact, Silhouette, SilhouetteDeformed, SilhouetteDeformer, SilhouetteError, SilhouetteOptions, StrokeMatching,
+    StrokesError, ViewFit, deform_to_silhouette,
 };

@@ -12,9 +12,8 @@ const LEAST_SEEN: f64 = 0.3;
 pub(super) fn end_on(sections: &Sections, view: View) -> bool {
     let centres: Vec<DVec3> = (0..sections.len()).map(|k| sections.centre(k)).collect();
     let steps = centres.windows(2).map(|pair| pair[1] - pair[0]);
-    let (seen, whole) = steps.fold((0.0, 0.0), |(seen, whole), step| {
-        (seen + view.flat(step).length(), whole + step.length())
-    });
+    let (seen, whole) =
+        steps.fold((0.0, 0.0), |(seen, whole), step| (seen + view.flat(step).length(), whole + step.length()));
     seen.is_nan() || whole == 0.0 || seen < LEAST_SEEN * whole
 }
 

@@ -76,6 +76,17 @@ pub enum StrokesError {
     },
 }
 
+impl StrokesError {
+    /// Name of the view at fault, where there is one.
+    pub fn view(&self) -> Option<&'static str> {
+        match self {
+            Self::Strokes { view, .. } | Self::NoArea { view, .. } | Self::Crossing { view, .. } => Some(view),
+            Self::NotSquare { other, .. } => Some(other),
+            Self::Views { .. } | Self::TooLarge { .. } => None,
+        }
+    }
+}
+
 /// Why strokes cannot be the silhouettes of a stack of sections.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SilhouetteError {
@@ -116,7 +127,9 @@ pub enum SilhouetteError {
         view: &'static str,
     },
     /// A stack that is seen end on, and more than its outline.
-    #[error("the {view} view looks along the sections: draw its outline in one closed stroke, in no other view at once")]
+    #[error(
+        "the {view} view looks along the sections: draw its outline in one closed stroke, in no other view at once"
+    )]
     OutlineNeeded {
         /// The view.
         view: &'static str,

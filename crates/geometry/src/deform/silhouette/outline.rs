@@ -114,9 +114,8 @@ fn beyond(
         for point in section {
             let p = view.flat(*point);
             let around = line.iter().zip(line.iter().cycle().skip(1));
-            let crossings = around.filter(|(a, b)| {
-                (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)
-            });
+            let crossings = around
+                .filter(|(a, b)| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y));
             if crossings.count() % 2 == 0 {
                 let off = crate::curve::closest(outline, view.place(p, 0.0)).distance;
                 if off > worst.0 {

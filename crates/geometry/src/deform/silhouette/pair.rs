@@ -29,11 +29,7 @@ pub(crate) struct Pair {
 
 impl Pair {
     /// The pair of a silhouette that runs from `from` towards `to`, two points in space.
-    pub(crate) fn new(
-        silhouette: &Silhouette<'_>,
-        from: glam::DVec3,
-        to: glam::DVec3,
-    ) -> Result<Self, StrokesError> {
+    pub(crate) fn new(silhouette: &Silhouette<'_>, from: glam::DVec3, to: glam::DVec3) -> Result<Self, StrokesError> {
         let view = silhouette.view;
         let name = || names(silhouette.strokes);
         let flat = |curve: &Curve| -> Vec<DVec2> { curve.points().iter().map(|p| view.flat(*p)).collect() };
@@ -85,9 +81,8 @@ impl Pair {
 fn parted(points: &[DVec2], closed: bool, axis: DVec2) -> [Vec<DVec2>; 2] {
     let height = |k: usize| points[k].dot(axis);
     // The first of several that reach equally far.
-    let farthest = |sign: f64| {
-        (1..points.len()).fold(0, |best, k| if sign * height(k) > sign * height(best) { k } else { best })
-    };
+    let farthest =
+        |sign: f64| (1..points.len()).fold(0, |best, k| if sign * height(k) > sign * height(best) { k } else { best });
     if closed {
         let (low, high) = (farthest(-1.0), farthest(1.0));
         let run = |from: usize, to: usize| -> Vec<DVec2> {

@@ -257,7 +257,8 @@ fn errors_say_what_to_do() {
     let sheet = Sections::new(start.iter().map(<[DVec3]>::to_vec).collect(), false, vec![]).unwrap();
     assert_eq!(error(&sheet, &[front]), SilhouetteError::SectionsAreOpen);
     let level = [stroke("level", 2, |t| DVec3::new(0.4, 0.2, t)), strokes[1].clone()];
-    let level = [level[0].map(|p| DVec3::new(0.3 + 0.1 * p.z, 0.2 + 0.4 * p.z * (1.0 - p.z), 0.0)).unwrap(), level[1].clone()];
+    let level =
+        [level[0].map(|p| DVec3::new(0.3 + 0.1 * p.z, 0.2 + 0.4 * p.z * (1.0 - p.z), 0.0)).unwrap(), level[1].clone()];
     assert!(matches!(error(&start, &[Silhouette { strokes: &level, ..front }]), SilhouetteError::Level { .. }));
     let stopped = deform_to_silhouette(&start, &[front], &height(), &|done| done < 0.5);
     assert_eq!(stopped, Err(SilhouetteError::Cancelled));

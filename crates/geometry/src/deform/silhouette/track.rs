@@ -37,8 +37,11 @@ impl Track {
         let arcs = arc_lengths(points);
         let length = *arcs.last()?;
         let shares: Vec<f64> = arcs.iter().map(|arc| arc / length).collect();
-        (length > 0.0 && shares.iter().all(|share| share.is_finite()))
-            .then(|| Self { points: points.to_vec(), shares, given: (0..points.len()).collect() })
+        (length > 0.0 && shares.iter().all(|share| share.is_finite())).then(|| Self {
+            points: points.to_vec(),
+            shares,
+            given: (0..points.len()).collect(),
+        })
     }
 
     /// Heights rise where the line does. Between the two places at which it passes, for the last and for the first time,
