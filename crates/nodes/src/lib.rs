@@ -11,6 +11,8 @@ mod input;
 mod mesh;
 mod neighbours;
 mod output;
+mod placement;
+mod primitive;
 mod section;
 mod silhouettes;
 mod stiffness;
@@ -43,19 +45,32 @@ fn kinds() -> Vec<NodeKind> {
         generate::detail_generator::kind(),
         input::import_curves::kind(),
         input::import_mesh::kind(),
+        input::import_skeleton::kind(),
         input::sketch::kind(),
+        mesh::caps::kind(),
         mesh::cut_with_curve::kind(),
         mesh::cut_with_plane::kind(),
         mesh::join_meshes::kind(),
+        mesh::join_parts::kind(),
         mesh::mirror_mesh::kind(),
         mesh::silhouette_of::kind(),
         mesh::silhouette_report::kind(),
         mesh::transform_mesh::kind(),
         output::curves_out::kind(),
         output::mesh_out::kind(),
+        primitive::primitive_shape::kind(),
+        primitive::superellipsoid::kind(),
         section::curves_from_sections::kind(),
+        section::edit_section::kind(),
+        section::ellipse::kind(),
+        section::fit_report::kind(),
         section::fit_sections::kind(),
+        section::order_sections::kind(),
+        section::pick_sections::kind(),
+        section::sections_from_mesh::kind(),
+        surface::continuity_report::kind(),
         surface::join_surfaces::kind(),
+        surface::section_at::kind(),
         surface::surface_from_cross_sections::kind(),
         surface::tessellate::kind(),
     ]
@@ -96,6 +111,9 @@ pub fn catalogue() -> Result<Catalogue, CatalogueError> {
         .conversion::<wire::Sections, wire::CrossSections>(|points| Ok(wire::CrossSections::Points(points.clone())))?;
     catalogue.conversion::<wire::EllipticSections, wire::CrossSections>(|series| {
         Ok(wire::CrossSections::Series(series.clone()))
+    })?;
+    catalogue.collect::<wire::EllipticSections, wire::EllipticSections>(|stacks| {
+        Ok(wire::EllipticSections::new(stacks.iter().flat_map(|stack| stack.0.iter().cloned()).collect()))
     })?;
     catalogue
         .conversion::<wire::EllipticSections, wire::Curves>(|series| fitting::as_curves(&series.0).map(wire::Curves))?;

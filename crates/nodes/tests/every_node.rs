@@ -60,6 +60,14 @@ fn square() -> Mesh {
     Mesh::new(corners, [[0_u32, 1, 2, 3]]).unwrap().with_uvs(uvs).unwrap()
 }
 
+/// An open tube of four walls, 2 m high.
+fn wall() -> Mesh {
+    let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
+    let row = |y: f64| corners.map(|(x, z)| DVec3::new(x, y, -z));
+    let quads = (0..4_u32).map(|k| [k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k]);
+    Mesh::new([row(0.0), row(2.0)].concat(), quads).unwrap()
+}
+
 /// A kind that gives a fixed value, for linking to inputs that take no literal.
 fn constant<T: Wire + Clone>(name: &str, value: T) -> NodeKind {
     let mut node = NodeKind::declare(name, 1, "test", "A fixed value.");
@@ -96,23 +104,6 @@ fn test_catalogue() -> Catalogue {
     for (index, sections) in [flat, open, huge].into_iter().enumerate() {
         catalogue.register(constant(&format!("nasty-sections-{index}"), wire::Sections(sections))).unwrap();
     }
-    let border = |curve: Curve, direction: DVec3| {
-        let directions = vec![direction; curve.points().len()];
-        wire::Borders(vec![Border::new(curve, directions).unwrap()])
-    };
-    let nasty_borders = [
-        wire::Borders::default(),
-        border(rail("open", 0.0), DVec3::X),
-        border(circle("far", 1e200, 1e200), DVec3::Y),
-        border(circle("flat", 1e-200, 0.0), DVec3::Y),
-        wire::Borders([border(circle("a", 1.0, 0.0), DVec3::Y).0, border(circle("b", 2.0, 0.0), DVec3::Y).0].concat()),
-    ];
-    for (index, borders) in nasty_borders.into_iter().enumerate() {
-        catalogue.register(constant(&format!("nasty-borders-{index}"), borders)).unwrap();
-    }
-    catalogue.register(constant("good-borders", border(circle("ring", 1.0, 0.0), DVec3::Y))).unwrap();
-    catalogue.register(constant("good-shape", wire::Shape::Mesh(wire::Mesh::new(square())))).unwrap();
-    catalogue.register(constant("nasty-shape-0", wire::Shape::Mesh(wire::Mesh::new(Mesh::default())))).unwrap();
     let series = |coefficients: Vec<DVec3>, closed: bool| {
         let to = if closed { TAU } else { PI };
         let segment = EllipticSegment { from: 0.0, to, local: false, series: Series::new(coefficients).unwrap() };
@@ -168,17 +159,43 @@ fn test_catalogue() -> Catalogue {
     catalogue.register(constant("good-cross-sections", wire::CrossSections::Series(good.clone()))).unwrap();
     catalogue.register(constant("good-elliptic-sections", good)).unwrap();
     catalogue.register(constant("good-surface", wire::Surface::Series(vec![tall]))).unwrap();
+    let border = |curve: Curve, direction: DVec3| {
+        let directions = vec![direction; curve.points().len()];
+        wire::Borders(vec![Border::new(curve, directions).unwrap()])
+    };
+    let nasty_borders = [
+        wire::Borders::default(),
+        border(rail("open", 0.0), DVec3::X),
+        border(circle("far", 1e200, 1e200), DVec3::Y),
+        border(circle("flat", 1e-200, 0.0), DVec3::Y),
+        wire::Borders([border(circle("a", 1.0, 0.0), DVec3::Y).0, border(circle("b", 2.0, 0.0), DVec3::Y).0].concat()),
+    ];
+    for (index, borders) in nasty_borders.into_iter().enumerate() {
+        catalogue.register(constant(&format!("nasty-borders-{index}"), borders)).unwrap();
+    }
+    catalogue.register(constant("good-borders", border(circle("ring", 1.0, 0.0), DVec3::Y))).unwrap();
+    catalogue.register(constant("good-shape", wire::Shape::Mesh(wire::Mesh::new(square())))).unwrap();
+    catalogue.register(constant("nasty-shape-0", wire::Shape::Mesh(wire::Mesh::new(Mesh::default())))).unwrap();
     catalogue.register(constant("nasty-mesh-0", wire::Mesh::new(Mesh::default()))).unwrap();
+    let rings = (0..5).map(|k| circle("", 1.0, f64::from(k))).collect();
+    catalogue.register(constant("for-order-sections-curves", wire::Curves(rings))).unwrap();
+    catalogue.register(constant("for-sections-from-mesh-mesh", wire::Mesh::new(wall()))).unwrap();
+    let bone = Curve::new("bone", vec![DVec3::Y * 0.1, DVec3::Y * 1.9], false).unwrap();
+    catalogue.register(constant("for-sections-from-mesh-bone", wire::Curve(bone))).unwrap();
     catalogue.register(constant("good-curves", wire::Curves(four_rails()))).unwrap();
     let upright = circle("around", 0.5, 0.0).map(|p| DVec3::new(p.x, -p.z, 0.0)).unwrap();
     let over = Curve::new("over", vec![DVec3::splat(0.25), DVec3::splat(0.75)], false).unwrap();
-    catalogue.register(constant("over-the-square", wire::Curves(vec![over]))).unwrap();
-    catalogue.register(constant("around-a-corner", wire::Curve(upright))).unwrap();
+    catalogue.register(constant("for-draw-on-surface-strokes", wire::Curves(vec![over]))).unwrap();
+    catalogue.register(constant("for-cut-with-curve-stroke", wire::Curve(upright))).unwrap();
     catalogue.register(constant("good-curve", wire::Curve(circle("ring", 1.2, 1.25)))).unwrap();
     catalogue.register(constant("good-sections", wire::Sections(tube()))).unwrap();
     catalogue.register(constant("good-mesh", wire::Mesh::new(square()))).unwrap();
     catalogue
 }
+
+/// Two joints.
+const SKELETON: &[u8] = br#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"skins":[{"joints":[0,1]}],
+"nodes":[{"name":"hip","children":[1]},{"name":"knee","translation":[0,-1,0]}]}"#;
 
 /// The constants that give this type, good or nasty.
 fn constants(catalogue: &Catalogue, wire: WireType, prefix: &str) -> Vec<String> {
@@ -197,6 +214,16 @@ fn shipped() -> Vec<String> {
     catalogue.kinds().filter(|kind| !kind.has_body()).map(|kind| kind.name().to_owned()).collect()
 }
 
+/// Whether an input that may stay unconnected is linked all the same: the node makes nothing of nothing.
+fn wanted(kind: &str, input: &str) -> bool {
+    match kind {
+        // One surface twice makes no chain.
+        "join-surfaces" => input == "a",
+        "edit-section" => input == "contour",
+        kind => kind.starts_with("join"),
+    }
+}
+
 /// A graph with one node of the kind under test, everything it needs linked or set.
 fn sample(catalogue: &Catalogue, kind: &str, folder: &Path) -> (Graph, NodeId) {
     let mut graph = Graph::new();
@@ -204,23 +231,22 @@ fn sample(catalogue: &Catalogue, kind: &str, folder: &Path) -> (Graph, NodeId) {
     let declared = catalogue.kind(kind).unwrap().clone();
     for input in declared.inputs() {
         match LiteralKind::of_wire(input.wire) {
-            None if !input.optional || kind.starts_with("join") => {
-                let name = match kind {
-                    // What misses the mesh is an error.
-                    "draw-on-surface" if input.name == "strokes" => "over-the-square".to_owned(),
-                    "cut-with-curve" if input.name == "stroke" => "around-a-corner".to_owned(),
-                    _ => constants(catalogue, input.wire, "good").first().unwrap().clone(),
+            None if !input.optional || wanted(kind, &input.name) => {
+                let own = format!("for-{kind}-{}", input.name);
+                let name = match catalogue.kind(&own) {
+                    Some(_) => own,
+                    None => constants(catalogue, input.wire, "good").first().unwrap().clone(),
                 };
-            None if !input.optional || (kind.starts_with("join") && (kind != "join-surfaces" || input.name == "a")) => {
-                let name = constants(catalogue, input.wire, "good").first().unwrap().clone();
                 let source = graph.find(&name).unwrap_or_else(|| graph.add(catalogue, &name, &name).unwrap());
                 graph.connect(catalogue, source, "out", node, &input.name).unwrap();
             }
             Some(LiteralKind::Strokes) => graph.set(node, &input.name, strokes()).unwrap(),
             Some(LiteralKind::File) => {
-                let file = match input.extensions.iter().any(|e| e == "json") {
-                    true => ("curves.json", br#"{"contours":[{"name":"a","points":[[0,0,0],[0,1,0]]}]}"#.to_vec()),
-                    false => ("mesh.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_vec()),
+                let reads = |extension: &str| input.extensions.iter().any(|e| e == extension);
+                let file: (&str, &[u8]) = match (reads("json"), reads("obj")) {
+                    (true, _) => ("curves.json", br#"{"contours":[{"name":"a","points":[[0,0,0],[0,1,0]]}]}"#),
+                    (false, true) => ("mesh.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+                    (false, false) => ("skeleton.gltf", SKELETON),
                 };
                 std::fs::write(folder.join(file.0), file.1).unwrap();
                 graph.set(node, &input.name, Literal::File(file.0.to_owned())).unwrap();
@@ -247,9 +273,6 @@ fn every_file_is_a_registered_kind_of_its_name() {
     let holds_kinds = |path: &Path| path.is_dir() && !path.ends_with("wire") && !path.ends_with("frozen");
     for folder in std::fs::read_dir(source).unwrap().map(|entry| entry.unwrap().path()).filter(|path| holds_kinds(path))
     {
-    // A folder beside a file of its name is that module's.
-    let of_kinds = |path: &std::path::PathBuf| path.is_dir() && !path.with_extension("rs").exists();
-    for folder in std::fs::read_dir(source).unwrap().map(|entry| entry.unwrap().path()).filter(of_kinds) {
         for file in std::fs::read_dir(folder).unwrap() {
             let stem = file.unwrap().path().file_stem().unwrap().to_string_lossy().replace('_', "-");
             if stem != "mod" {

@@ -52,6 +52,13 @@ fn net(side: u32) -> Mesh {
     Mesh::new(points.collect(), quads).unwrap()
 }
 
+/// An open tube of three walls around (1, 0, 1), 2 m high.
+fn pillar() -> Mesh {
+    let row = |y: f64| [(0.0, 0.0), (1.0, 3.0), (3.0, 0.0)].map(|(x, z)| DVec3::new(x, y, z));
+    let quads = (0..3_u32).map(|k| [k, (k + 1) % 3, 3 + (k + 1) % 3, 3 + k]);
+    Mesh::new([row(-1.0), row(1.0)].concat(), quads).unwrap()
+}
+
 fn obj(mesh: &Mesh) -> Vec<u8> {
     let vertices = mesh.positions().iter().map(|p| format!("v {} {} {}\n", p.x, p.y, p.z));
     let faces = mesh.polygons().map(|p| format!("f {} {} {} {}\n", p[0] + 1, p[1] + 1, p[2] + 1, p[3] + 1));
@@ -114,6 +121,11 @@ fn nodes_on_shapes() {
             .set("before", Literal::Number(0.5))
             .set("after", Literal::Number(0.5))
     });
+    let rings = wire::Curves((0..100).map(|k| ring("", 100, 1.0, 0.02 * (k * 37 % 100) as f64)).collect());
+    stops(&catalogue, "order-sections", 300, |h| h.give("curves", rings.clone()));
+    stops(&catalogue, "primitive-shape", 2, |h| h.set("sections", Literal::Integer(100)));
+    stops(&catalogue, "superellipsoid", 1, |h| h.set("sections", Literal::Integer(100)));
+    stops(&catalogue, "ellipse", 1, |h| h.set("points", Literal::Integer(1000)));
     let points = wire::CrossSections::Points(stack.clone());
     stops(&catalogue, "surface-from-cross-sections", 200, |h| h.give("sections", points.clone()));
     stops(&catalogue, "curves-from-sections", 100, |h| h.give("sections", stack.clone()));
@@ -129,6 +141,13 @@ fn nodes_on_meshes() {
     stops(&catalogue, "transform-mesh", 4, |h| h.give("mesh", mesh.clone()));
     stops(&catalogue, "mirror-mesh", 8, |h| h.give("mesh", mesh.clone()).set("keep", Literal::Boolean(true)));
     stops(&catalogue, "join-meshes", 4, |h| h.give("a", mesh.clone()).give("b", mesh.clone()));
+    stops(&catalogue, "caps", 5, |h| h.give("mesh", mesh.clone()));
+    stops(&catalogue, "join-parts", 8, |h| h.give("a", mesh.clone()).give("b", mesh.clone()));
+    let bone = Curve::new("bone", vec![DVec3::new(1.0, -0.9, 1.0), DVec3::new(1.0, 0.9, 1.0)], false).unwrap();
+    let pillar = wire::Mesh::new(pillar());
+    stops(&catalogue, "sections-from-mesh", 100, |h| {
+        h.give("mesh", pillar.clone()).give("bone", wire::Curve(bone.clone())).set("count", Literal::Integer(100))
+    });
     stops(&catalogue, "mesh-out", 3 * 400 * 400 / 65_536 + 8, |h| h.give("mesh", mesh.clone()).examine());
 }
 

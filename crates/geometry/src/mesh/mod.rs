@@ -1,5 +1,6 @@
 //! Polygon meshes and what can be measured on them.
 
+pub mod caps;
 pub mod check;
 pub mod cut;
 pub mod distance;
@@ -15,6 +16,7 @@ pub mod topology;
 pub mod transform;
 mod triangle_tree;
 pub mod triangulate;
+pub mod weld;
 
 pub use check::{MeshCheck, check, check_while};
 pub use distance::{MeshDistance, Nearest};

@@ -99,7 +99,7 @@ fn go_on(progress: &dyn Fn(f64) -> bool, done: f64) -> Result<(), FitError> {
     if progress(done) { Ok(()) } else { Err(FitError::Stopped) }
 }
 
-fn check(options: &FitOptions) -> Result<(), FitError> {
+pub(super) fn check(options: &FitOptions) -> Result<(), FitError> {
     let mut counts = vec![match options.harmonics {
         Harmonics::Smallest { most } => most,
         Harmonics::Fixed(harmonics) => harmonics,
@@ -127,7 +127,7 @@ fn check(options: &FitOptions) -> Result<(), FitError> {
 }
 
 /// Samples, frames and angles of all curves, and the kind of angles.
-fn prepared(
+pub(super) fn prepared(
     curves: &[Curve],
     options: &FitOptions,
     progress: &dyn Fn(f64) -> bool,
@@ -252,7 +252,7 @@ fn solve_stack(
 }
 
 /// The section in its place, and its report.
-fn finished(
+pub(super) fn finished(
     prepared: &Prepared,
     outcome: Outcome,
     closed: bool,

@@ -150,10 +150,13 @@ pub(super) fn automatic(
         return Ok(Joints::default());
     }
     let corners = Joints::at_corners(stack, closed, with.corner, with.continuity);
-    if !corners.angles.is_empty()
-        && let Ok(solved) = solve_all(&corners)
-    {
-        (joints, outcomes) = (corners, solved);
+    if !corners.angles.is_empty() {
+        match solve_all(&corners) {
+            Ok(solved) => (joints, outcomes) = (corners, solved),
+            Err(FitError::Stopped) => return Err(FitError::Stopped),
+            // Corners too close to one another are no place to begin.
+            Err(_) => {}
+        }
     }
     while joints.angles.len() < MOST && !outcomes.iter().all(|outcome| outcome.met) {
         let angle = place(stack, &outcomes, closed);
