@@ -116,7 +116,7 @@ fn edited_forearm() -> Saved {
     for (from, output, to, input) in [
         (drawn, "curves", pick, "curves"),
         (pick, "curve", pulled, "curves"),
-        (pulled, "curves", edit, "contour"),
+        (pulled, "curves", edit, "contours"),
         (fitted, "sections", edit, "sections"),
         (edit, "sections", fit, "sections"),
     ] {

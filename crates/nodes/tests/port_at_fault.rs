@@ -105,7 +105,7 @@ fn text(value: &str) -> Literal {
 fn deform_by_cross_section() {
     let run = |stack: wire::Sections, contour: Curve, settings: Vec<(&'static str, Literal)>| Wiring {
         kind: "deform-by-cross-section",
-        links: vec![("sections", constant("stack", stack)), ("contour", constant("drawn", wire::Curve(contour)))],
+        links: vec![("sections", constant("stack", stack)), ("contours", constant("drawn", wire::Curves(vec![contour])))],
         settings,
     };
     let number = Literal::Number;
@@ -115,7 +115,7 @@ fn deform_by_cross_section() {
         .blames("after", "after section 5");
     run(sections(11, false), contour(), vec![]).blames("sections", "sections are open");
     run(sections(4, true), contour(), vec![]).blames("sections", "at least 5");
-    run(sections(11, true), ring("far", 1.0, 50.0), vec![]).blames("contour", "onto the surface");
+    run(sections(11, true), ring("far", 1.0, 50.0), vec![]).blames("contours", "onto the surface");
 }
 
 #[test]

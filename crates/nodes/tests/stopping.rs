@@ -117,7 +117,7 @@ fn nodes_on_shapes() {
     let stack = wire::Sections(Sections::new((0..100).map(row).collect(), true, vec![]).unwrap());
     stops(&catalogue, "deform-by-cross-section", 40, |h| {
         h.give("sections", stack.clone())
-            .give("contour", wire::Curve(ring("waist", 100, 0.8, 1.0)))
+            .give("contours", wire::Curves(vec![ring("waist", 100, 0.8, 1.0)]))
             .set("before", Literal::Number(0.5))
             .set("after", Literal::Number(0.5))
     });
