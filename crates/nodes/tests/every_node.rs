@@ -155,7 +155,17 @@ fn test_catalogue() -> Catalogue {
     for (index, surface) in nasty_surfaces.into_iter().enumerate() {
         catalogue.register(constant(&format!("nasty-surface-{index}"), surface)).unwrap();
     }
-    let good = wire::EllipticSections::new(vec![ellipse(0.0, 1.0), ellipse(1.0, 1.2), ellipse(2.0, 1.0)]);
+    let met = wire::SectionFit {
+        mean: 0.001,
+        maximum: 0.002,
+        diagonal: 2.8,
+        met: true,
+        worst: DVec3::X,
+        worst_angle: 0.0,
+        worst_distance: 0.005,
+    };
+    let fitted = |height: f64, size: f64| wire::NamedSection { fit: Some(met.clone()), ..ellipse(height, size) };
+    let good = wire::EllipticSections::new(vec![fitted(0.0, 1.0), fitted(1.0, 1.2), fitted(2.0, 1.0)]);
     catalogue.register(constant("good-cross-sections", wire::CrossSections::Series(good.clone()))).unwrap();
     catalogue.register(constant("good-elliptic-sections", good)).unwrap();
     catalogue.register(constant("good-surface", wire::Surface::Series(vec![tall]))).unwrap();

@@ -138,7 +138,7 @@ mod tests {
     fn joints_stay_as_they_are() {
         let square = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(x, y)| DVec3::new(x, y, 0.0));
         let square = Curve::new("square", square.to_vec(), true).unwrap();
-        let joints = [0.7854, 2.3562].map(|angle| Joint { angle, continuity: Continuity::C0 }).to_vec();
+        let joints = [0.25 * PI, 0.75 * PI].map(|angle| Joint { angle, continuity: Continuity::C0 }).to_vec();
         let options = FitOptions {
             split: Split::At(joints),
             harmonics: Harmonics::Fixed(3),

@@ -196,7 +196,7 @@ mod tests {
         let stack = fit_sections(&curves, &FitOptions::default()).unwrap();
         let old = &stack.sections[4].section;
         let wider = curves[4].map(|p| old.frame().origin + (p - old.frame().origin) * 1.1).unwrap();
-        let new = refit(old, &wider.reversed(), &RefitOptions::default()).unwrap();
+        let new = refit(old, &wider.clone().reversed(), &RefitOptions::default()).unwrap();
         assert!(new.report.reversed && new.report.met);
         for k in 0..60 {
             let v = f64::from(k) * 0.1;

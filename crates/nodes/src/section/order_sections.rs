@@ -45,6 +45,11 @@ pub(crate) fn kind() -> NodeKind {
         "Sections nearer to one another than this share of their size count as one, and the second is dropped.",
     );
     node.soft_range(double, 0.0..=0.05);
+    let shared = node.boolean(
+        "shared",
+        false,
+        "The curves come from parts that share sections: one that comes twice is meant, and dropped without a warning.",
+    );
     let ordered = node
         .output::<wire::Curves>("curves", "The sections in order, counter-clockwise about the direction of the stack.");
     let reversed = node.figure("reversed", Unit::None, "Sections that were run the other way.");
@@ -69,7 +74,13 @@ pub(crate) fn kind() -> NodeKind {
             Err(error @ OrderError::Double { .. }) => return Err(error).at(double),
             found => found.at(curves)?,
         };
-        found.warnings.iter().for_each(|warning| ports.warn(warning));
+        for warning in &found.warnings {
+            if ports.value(shared) && matches!(warning, OrderWarning::Double { .. }) {
+                ports.note(warning);
+            } else {
+                ports.warn(warning);
+            }
+        }
         let doubles = found.warnings.iter().filter(|warning| matches!(warning, OrderWarning::Double { .. })).count();
         let turned = found.placed.iter().filter(|placed| placed.reversed).count();
         let rows = found.placed.iter().map(|placed| {

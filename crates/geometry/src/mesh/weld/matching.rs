@@ -122,9 +122,9 @@ fn fit(
         go_on()?;
         for against in [true, false] {
             let (mut gap, mut squares) = (0.0_f64, 0.0);
-            for k in 0..count {
+            for (k, vertex) in one.iter().enumerate() {
                 let partner = if against { (shift + count - k) % count } else { (shift + k) % count };
-                let apart = at(one[k]).distance_squared(at(other[partner]));
+                let apart = at(*vertex).distance_squared(at(other[partner]));
                 gap = gap.max(apart);
                 squares += apart;
                 if gap > within * within || best.as_ref().is_some_and(|(least, _)| squares >= *least) {
