@@ -186,11 +186,14 @@ pub fn deform_by_cross_sections(
     };
     let mut rows: Vec<Vec<DVec3>> = sections.iter().map(<[DVec3]>::to_vec).collect();
     let mut largest = 0.0_f64;
-    let steps: usize = contours.len() * sections.len();
+    let span = |group: &[usize]| {
+        let first = group.iter().map(|contour| replaced[*contour].first).min().unwrap_or(0);
+        (first, group.iter().map(|contour| replaced[*contour].last).max().unwrap_or(first))
+    };
+    let steps: usize = groups.iter().map(|group| (span(group).1 - span(group).0 + 1) * group.len()).sum();
     let mut done = 0;
     for group in groups {
-        let first = group.iter().map(|contour| replaced[*contour].first).min().unwrap_or(0);
-        let last = group.iter().map(|contour| replaced[*contour].last).max().unwrap_or(0);
+        let (first, last) = span(&group);
         let pins: Vec<usize> = group.iter().map(|contour| replaced[*contour].section - first).collect();
         let beam = OpenBeam::new(last - first + 1, &pins, end, end, options.stiffness)?;
         for (place, contour) in group.iter().enumerate() {
