@@ -317,7 +317,7 @@ fn silhouettes() {
         let none = Wiring { kind, links, settings: vec![] }.run().unwrap_err();
         assert!(none.0.is_none() && none.1.contains("no strokes are connected"), "{none:?}");
         let crossing =
-            wire::Curves(vec![strokes("one", 0.1, 0.02).0[1].clone(), strokes("other", 0.1, -0.02).0[0].clone()]);
+            wire::Curves(vec![strokes("one", 0.1, 0.03).0[1].clone(), strokes("other", 0.1, -0.005).0[0].clone()]);
         run(kind, "front", sections(11, true), crossing).blames("front", "cross at");
         run(kind, "side", sections(11, true), strokes("flat", 0.5, 0.0))
             .blames("side", "enclose no area in the side view");
