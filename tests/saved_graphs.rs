@@ -119,6 +119,7 @@ fn every_saved_graph_is_tested_here() {
             "from-template",
             "head",
             "hip",
+            "human",
             "leg",
             "leg-deformed",
             "legs",
