@@ -10,6 +10,7 @@ use super::implicit::Implicit;
 use super::patch::{Holder, Patch};
 use super::polar::{nearest_rotation, uniform_scale};
 use super::reconstruct::Reconstruct;
+use super::repeat::Repeated;
 use super::stencil::Gradients;
 use super::winding::Winding;
 use super::well_posed;
@@ -274,7 +275,7 @@ impl Binding {
         go_on(0.4)?;
         let scale_of: Vec<f64> = if scales { gradients.iter().map(|m| uniform_scale(*m)).collect() } else { Vec::new() };
         let scale = |vertex: usize| if scales { scale_of[vertex] } else { 1.0 };
-        let mut turned = without_shear(patch, gradients, &scale);
+        let turned = without_shear(patch, gradients, &scale);
         go_on(0.5)?;
         let mut displacements = self.held(transforms);
         systems.reconstruct.solve(patch, &turned, &mut displacements)?;
@@ -283,20 +284,20 @@ impl Binding {
             Passes::Once => (0.0, if wound { PASSES_AFTER_WINDING } else { 1 }),
             Passes::Converged { tolerance, most } => (tolerance, most.max(1)),
         };
-        let mut passes = 1;
-        let mut last_move = 1.0;
-        while passes < most && last_move > tolerance {
-            go_on(0.5 + 0.5 * passes as f64 / most as f64)?;
-            turned = systems.reconstruct.rotations(patch, &displacements, &prescribed);
+        let pass = |displacements: &mut [DVec3]| {
+            let mut turned = systems.reconstruct.rotations(patch, displacements, &prescribed);
+            let energy = systems.reconstruct.energy(patch, &turned, displacements);
             for (vertex, turn) in turned.iter_mut().enumerate().filter(|(v, _)| patch.gradient[*v].is_none()) {
                 *turn *= scale(vertex);
             }
-            let before = displacements[..patch.free].to_vec();
-            systems.reconstruct.solve(patch, &turned, &mut displacements)?;
-            let farthest = before.iter().zip(&displacements).map(|(p, q)| p.distance(*q)).fold(0.0, f64::max);
-            last_move = if self.diagonal > 0.0 { farthest / self.diagonal } else { 0.0 };
-            passes += 1;
-        }
+            systems.reconstruct.solve(patch, &turned, displacements).map(|()| energy)
+        };
+        // Only edges have an energy that every plain pass lowers, by which a guess is judged.
+        let guesses = matches!(options.passes, Passes::Converged { .. }) && systems.reconstruct.lowers_energy() && !scales;
+        let mut repeated = Repeated::new(tolerance * self.diagonal, most, guesses);
+        repeated.run(&mut displacements, patch.free, &pass, &|fraction| go_on(0.5 + 0.5 * fraction))?;
+        let last_move = if self.diagonal > 0.0 { repeated.last_move / self.diagonal } else { 0.0 };
+        let passes = repeated.passes;
         let points: Vec<DVec3> = patch.points.iter().zip(&displacements).map(|(p, u)| *p + *u).collect();
         let last = systems.reconstruct.rotations(patch, &displacements, &prescribed);
         let mesh = self.finished(transforms, &points, &last)?;

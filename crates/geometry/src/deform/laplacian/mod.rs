@@ -22,6 +22,7 @@
 //! - Beyond the thesis: handles that wind by more than 180 degrees ([`HandleTransform`]), edges instead of coordinates
 //!   in the second system ([`Reconstruction::Edges`]), and repeating it until nothing moves ([`Passes`]).
 
+mod anderson;
 mod binding;
 mod error;
 mod handle;
@@ -29,6 +30,7 @@ mod implicit;
 mod patch;
 pub mod polar;
 mod reconstruct;
+mod repeat;
 mod rows;
 mod stencil;
 #[cfg(test)]

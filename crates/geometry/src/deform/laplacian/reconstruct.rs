@@ -66,6 +66,30 @@ impl Reconstruct {
         &self.laplacians
     }
 
+    /// Whether a pass of rotations and positions lowers [`Reconstruct::energy`].
+    pub fn lowers_energy(&self) -> bool {
+        self.kind == Reconstruction::Edges
+    }
+
+    /// The sum over the vertices and the edges to their neighbours, one end free, of the edge's weight times the square of
+    /// what its turn leaves.
+    pub fn energy(&self, patch: &Patch, turned: &[DMat3], displacements: &[DVec3]) -> f64 {
+        let of = |vertex: usize| {
+            let mut sum = 0.0;
+            for (k, w) in self.laplacians.row(vertex).filter(|(k, _)| *k != vertex) {
+                if vertex < patch.free || k < patch.free {
+                    let before = patch.points[vertex] - patch.points[k];
+                    let after = before + displacements[vertex] - displacements[k];
+                    sum -= w * (after - turned[vertex] * before).length_squared();
+                }
+            }
+            sum
+        };
+        // Summed in one order, whatever the number of threads.
+        let parts: Vec<f64> = (0..self.laplacians.len()).into_par_iter().with_min_len(1024).map(of).collect();
+        parts.iter().sum()
+    }
+
     /// Bytes of the factor.
     pub fn bytes(&self) -> usize {
         self.factor.bytes()

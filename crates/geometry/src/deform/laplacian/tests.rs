@@ -64,7 +64,7 @@ pub(super) fn edge_error(before: &Mesh, after: &Mesh) -> f64 {
 
 #[test]
 fn explore() {
-    for (across, along) in [(6, 36), (6, 24), (10, 60), (4, 32)] {
+    for (across, along) in [(6, 36), (10, 60)] {
         for tri in [true, false] {
             let mesh = Arc::new(bar(across, along, tri));
             let height = f64::from(along) / f64::from(across);
@@ -74,7 +74,7 @@ fn explore() {
                 let bound =
                     Binding::new(mesh.clone(), None, &handles, &BindOptions { reconstruction }, &|_| true).unwrap();
                 println!("bar {across} x {along} tri {tri} {reconstruction:?} {:?}", bound.report());
-                for degrees in [120.0_f64, 170.0, 270.0] {
+                for degrees in [120.0_f64, 170.0] {
                     // As an arc would have it: the axis through which the bar bends by this angle keeps its length.
                     let free = height - 1.0;
                     let angle = degrees.to_radians();
@@ -93,7 +93,7 @@ fn explore() {
                         } else {
                             turn
                         };
-                        for passes in [Passes::Once, Passes::Converged { tolerance: 1e-6, most: 1000 }] {
+                        for passes in [Passes::Once, Passes::Converged { tolerance: 1e-6, most: 2000 }] {
                             let made = bound
                                 .deform(
                                     &[HandleTransform::default(), turn],
