@@ -4,6 +4,7 @@ pub mod adjacency;
 pub mod check;
 pub mod distance;
 pub(crate) mod ear_clipping;
+pub mod geodesic;
 pub mod manifold;
 pub mod measure;
 mod polygon;

@@ -82,10 +82,11 @@ pub enum Features {
 /// How often the second system is solved, each time with the rotations found in the last result.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Passes {
-    /// Once, as in the thesis.
+    /// Once, as in the thesis; four times where handles wind, as interpolated rotations know nothing of where they went.
     #[default]
     Once,
-    /// Until no vertex moves by more than `tolerance` times the diagonal of the region, or `most` times.
+    /// Until no vertex moves by more than `tolerance` times the diagonal of the region, or `most` times. Coordinates
+    /// ([`Reconstruction::Coordinates`]) between handles that wind are repeated four times at most.
     Converged {
         /// Largest move, as a fraction of the diagonal.
         tolerance: f64,
@@ -282,6 +283,10 @@ impl Binding {
 
         let (tolerance, most) = match options.passes {
             Passes::Once => (0.0, if wound { PASSES_AFTER_WINDING } else { 1 }),
+            // Coordinates alone hold few turns together: repeated long enough, what was wound unwinds.
+            Passes::Converged { tolerance, most } if wound && !systems.reconstruct.lowers_energy() => {
+                (tolerance, most.clamp(1, PASSES_AFTER_WINDING))
+            }
             Passes::Converged { tolerance, most } => (tolerance, most.max(1)),
         };
         let pass = |displacements: &mut [DVec3]| {

@@ -1,13 +1,11 @@
-//! The deformation as a whole.
-
-use std::f64::consts::PI;
-use std::sync::Arc;
+//! Meshes to deform, and how far a deformation is off.
 
 use glam::DVec3;
 
-use super::*;
+use super::{BindError, BindOptions, Binding, DeformOptions, Deformed, Handle, HandleTransform, Holds, Passes, Reconstruction};
 use crate::mesh::select::Selection;
-use crate::mesh::{Mesh, measure};
+use crate::mesh::{Mesh, Topology, measure};
+use std::sync::Arc;
 
 /// A bar of square section along y: `across` quads on each side, `along` quads high, cubes, caps included; triangles
 /// where asked for.
@@ -55,65 +53,65 @@ pub(super) fn select(mesh: &Mesh, is_in: impl Fn(DVec3) -> bool) -> Selection {
 
 /// Root mean square of the relative changes of the edges' lengths.
 pub(super) fn edge_error(before: &Mesh, after: &Mesh) -> f64 {
-    let topology = crate::mesh::Topology::new(before);
+    let topology = Topology::new(before);
     let length = |mesh: &Mesh, [a, b]: [u32; 2]| mesh.positions()[a as usize].distance(mesh.positions()[b as usize]);
     let change = |edge| (length(after, edge) / length(before, edge) - 1.0).powi(2);
     let sum: f64 = topology.edges().map(|uses| change(uses[0].edge)).sum();
     (sum / topology.edge_count() as f64).sqrt()
 }
 
-#[test]
-fn explore() {
-    for (across, along) in [(6, 36), (10, 60)] {
-        for tri in [true, false] {
-            let mesh = Arc::new(bar(across, along, tri));
-            let height = f64::from(along) / f64::from(across);
-            let (bottom, top) = (select(&mesh, |p| p.y < 0.5), select(&mesh, |p| p.y > height - 0.5));
-            let handles = [&bottom, &top].map(|selection| Handle { selection, holds: Holds::Both });
-            for reconstruction in [Reconstruction::Coordinates, Reconstruction::Edges] {
-                let bound =
-                    Binding::new(mesh.clone(), None, &handles, &BindOptions { reconstruction }, &|_| true).unwrap();
-                println!("bar {across} x {along} tri {tri} {reconstruction:?} {:?}", bound.report());
-                for degrees in [120.0_f64, 170.0] {
-                    // As an arc would have it: the axis through which the bar bends by this angle keeps its length.
-                    let free = height - 1.0;
-                    let angle = degrees.to_radians();
-                    let radius = free / angle;
-                    for (name, turn) in [
-                        ("in place", HandleTransform::rotation(DVec3::Y * (height - 0.5), DVec3::Z, angle)),
-                        ("mid", HandleTransform::rotation(DVec3::Y * (height * 0.5), DVec3::Z, angle)),
-                        ("arc", HandleTransform::rotation(DVec3::new(-radius, 0.5, 0.0), DVec3::Z, angle)
-                            .shifted(DVec3::ZERO)),
-                    ] {
-                        let turn = if name == "arc" {
-                            // The top goes down to 0.5 first, then around.
-                            let down = DVec3::Y * -free;
-                            let lin = turn.linear();
-                            turn.shifted(lin * down)
-                        } else {
-                            turn
-                        };
-                        for passes in [Passes::Once, Passes::Converged { tolerance: 1e-6, most: 2000 }] {
-                            let made = bound
-                                .deform(
-                                    &[HandleTransform::default(), turn],
-                                    &DeformOptions { passes, ..Default::default() },
-                                    &|_| true,
-                                )
-                                .unwrap();
-                            let volume = measure::signed_volume(&made.mesh) / measure::signed_volume(&mesh);
-                            println!(
-                                "   {degrees} {name}: volume {volume:.3} edges {:.4} passes {} move {:.1e} wound {}",
-                                edge_error(&mesh, &made.mesh),
-                                made.passes,
-                                made.last_move,
-                                made.wound
-                            );
-                        }
-                    }
-                }
-            }
-        }
-    }
-    assert!(PI > 0.0);
+
+/// Handles that hold positions and gradients.
+pub(super) fn both<const N: usize>(selections: [&Selection; N]) -> [Handle<'_>; N] {
+    selections.map(|selection| Handle { selection, holds: Holds::Both })
 }
+
+pub(super) fn bind(mesh: &Mesh, handles: &[Handle<'_>], reconstruction: Reconstruction) -> Result<Binding, BindError> {
+    Binding::new(Arc::new(mesh.clone()), None, handles, &BindOptions { reconstruction }, &|_| true)
+}
+
+pub(super) fn deform(bound: &Binding, transforms: &[HandleTransform], passes: Passes) -> Deformed {
+    bound.deform(transforms, &DeformOptions { passes, ..DeformOptions::default() }, &|_| true).unwrap()
+}
+
+/// Largest distance between vertices, as a fraction of the diagonal of the first mesh.
+pub(super) fn apart(wanted: &Mesh, found: &[DVec3]) -> f64 {
+    let pairs = wanted.positions().iter().zip(found);
+    pairs.map(|(p, q)| p.distance(*q)).fold(0.0, f64::max) / measure::diagonal(wanted)
+}
+
+/// A ring with waves, which no straight line and no plane has much of; in triangles or quads.
+pub(super) fn ring(around: u32, across: u32, triangles: bool) -> Mesh {
+    let turn = |i: u32, count: u32| std::f64::consts::TAU * f64::from(i) / f64::from(count);
+    let points = (0..around).flat_map(|i| {
+        (0..across).map(move |j| {
+            let (u, v) = (turn(i, around), turn(j, across));
+            let thick = 0.4 + 0.05 * (3.0 * u).sin() * (2.0 * v).cos();
+            let from_axis = 1.0 + thick * v.cos();
+            DVec3::new(from_axis * u.cos(), thick * v.sin(), -from_axis * u.sin())
+        })
+    });
+    let at = |i: u32, j: u32| (i % around) * across + j % across;
+    let quads =
+        (0..around).flat_map(|i| (0..across).map(move |j| [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]));
+    let points: Vec<DVec3> = points.collect();
+    if triangles {
+        return Mesh::new(points, quads.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]])).unwrap();
+    }
+    Mesh::new(points, quads).unwrap()
+}
+
+/// A flat net of `wide` x `deep` quads of side 1 / `wide` in the plane y = 0.
+pub(super) fn sheet(wide: u32, deep: u32) -> Mesh {
+    let step = 1.0 / f64::from(wide);
+    let at = |x: u32, z: u32| z * (wide + 1) + x;
+    let points = (0..=deep).flat_map(|z| (0..=wide).map(move |x| step * DVec3::new(x.into(), 0.0, z.into())));
+    let quads =
+        (0..deep).flat_map(|z| (0..wide).map(move |x| [at(x, z), at(x, z + 1), at(x + 1, z + 1), at(x + 1, z)]));
+    Mesh::new(points.collect(), quads).unwrap()
+}
+
+mod bars;
+mod held;
+mod invariances;
+mod shapes;
