@@ -36,9 +36,8 @@ fn ring(around: u32, across: u32) -> Mesh {
     });
     let at = |i: u32, j: u32| (i % around) * across + j % across;
     let triangles = (0..around).flat_map(|i| {
-        (0..across).flat_map(move |j| {
-            [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]
-        })
+        (0..across)
+            .flat_map(move |j| [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]])
     });
     Mesh::new(points.collect(), triangles).expect("it is a mesh")
 }

@@ -13,9 +13,9 @@ pub struct Adjacency {
 impl Adjacency {
     /// Neighbours along the sides of the polygons.
     pub fn along_sides(mesh: &Mesh) -> Self {
-        let sides = mesh
-            .polygons()
-            .flat_map(|corners| corners.iter().copied().zip(corners.iter().copied().cycle().skip(1)).map(<[u32; 2]>::from));
+        let sides = mesh.polygons().flat_map(|corners| {
+            corners.iter().copied().zip(corners.iter().copied().cycle().skip(1)).map(<[u32; 2]>::from)
+        });
         Self::new(mesh.positions().len(), sides)
     }
 

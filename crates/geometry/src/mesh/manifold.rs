@@ -20,11 +20,7 @@ impl ManifoldReport {
 
     /// Examines some polygons of a mesh, and of the vertices those for which `whole` says that all their polygons are
     /// among them. Polygons must be less than [`Mesh::polygon_count`].
-    pub fn of_polygons(
-        mesh: &Mesh,
-        polygons: impl IntoIterator<Item = usize>,
-        whole: impl Fn(u32) -> bool,
-    ) -> Self {
+    pub fn of_polygons(mesh: &Mesh, polygons: impl IntoIterator<Item = usize>, whole: impl Fn(u32) -> bool) -> Self {
         // Of each corner its vertex and those before and behind it.
         let mut corners: Vec<[u32; 3]> = Vec::new();
         let mut sides: Vec<[u32; 2]> = Vec::new();
@@ -47,9 +43,7 @@ impl ManifoldReport {
         let mut ends: Vec<u32> = edges.iter().flatten().copied().collect();
         ends.sort_unstable();
         corners.sort_unstable();
-        let split = |fan: &&[[u32; 3]]| {
-            whole(fan[0][0]) && fans(fan) > 1 && ends.binary_search(&fan[0][0]).is_err()
-        };
+        let split = |fan: &&[[u32; 3]]| whole(fan[0][0]) && fans(fan) > 1 && ends.binary_search(&fan[0][0]).is_err();
         let vertices = corners.chunk_by(|a, b| a[0] == b[0]).filter(split).map(|fan| fan[0][0]).collect();
         Self { edges, vertices }
     }

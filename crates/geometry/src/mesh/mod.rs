@@ -1,7 +1,9 @@
 //! Polygon meshes and what can be measured on them.
 
 pub mod adjacency;
+pub mod caps;
 pub mod check;
+pub mod cut;
 pub mod distance;
 pub(crate) mod ear_clipping;
 pub mod geodesic;
@@ -11,11 +13,13 @@ mod polygon;
 pub mod ray;
 pub mod select;
 pub mod slice;
+pub mod stroke;
 pub mod topology;
 pub mod transform;
 mod triangle_tree;
 pub mod triangulate;
 pub mod weights;
+pub mod weld;
 
 pub use adjacency::Adjacency;
 pub use check::{MeshCheck, check, check_while};

@@ -50,7 +50,8 @@ impl Anderson {
         if count == 0 || lengths.contains(&0.0) {
             return Vec::new();
         }
-        let scaled = |i: usize, j: usize| dot(&self.differences[i].1, &self.differences[j].1) / (lengths[i] * lengths[j]);
+        let scaled =
+            |i: usize, j: usize| dot(&self.differences[i].1, &self.differences[j].1) / (lengths[i] * lengths[j]);
         let mut gram = DMatrix::from_fn(count, count, |i, j| if i >= j { scaled(i, j) } else { 0.0 });
         gram.fill_upper_triangle_with_lower_triangle();
         // Steps that nearly repeat each other must not cancel by large shares.
@@ -67,7 +68,8 @@ mod tests {
 
     /// A contraction that plain steps follow slowly: each coordinate by its own factor towards 1.
     fn contraction(x: &[DVec3]) -> Vec<DVec3> {
-        let of = |(i, p): (usize, &DVec3)| DVec3::ONE + (*p - DVec3::ONE) * DVec3::new(0.999, 0.99, 0.8 - 0.1 * i as f64);
+        let of =
+            |(i, p): (usize, &DVec3)| DVec3::ONE + (*p - DVec3::ONE) * DVec3::new(0.999, 0.99, 0.8 - 0.1 * i as f64);
         x.iter().enumerate().map(of).collect()
     }
 

@@ -12,8 +12,8 @@ use super::polar::{nearest_rotation, uniform_scale};
 use super::reconstruct::Reconstruct;
 use super::repeat::Repeated;
 use super::stencil::Gradients;
-use super::winding::Winding;
 use super::well_posed;
+use super::winding::Winding;
 use crate::linear_solver::LinearSolverError;
 use crate::mesh::select::Selection;
 use crate::mesh::{Mesh, measure};
@@ -200,8 +200,7 @@ impl Binding {
             let gradients = Gradients::new(&patch)?;
             let part = |from: f64, to: f64| move |done: f64| progress(from + (to - from) * done);
             let implicit = Implicit::new(&patch, gradients, &weights, &areas, &part(0.15, 0.8))?;
-            let reconstruct =
-                Reconstruct::new(&patch, options.reconstruction, &weights, &areas, &part(0.8, 1.0))?;
+            let reconstruct = Reconstruct::new(&patch, options.reconstruction, &weights, &areas, &part(0.8, 1.0))?;
             (report.degenerate, report.widened) = implicit.degenerate();
             report.factor_bytes = implicit.bytes() + reconstruct.bytes();
             Some(Systems { implicit, reconstruct })
@@ -274,7 +273,8 @@ impl Binding {
             gradients
         };
         go_on(0.4)?;
-        let scale_of: Vec<f64> = if scales { gradients.iter().map(|m| uniform_scale(*m)).collect() } else { Vec::new() };
+        let scale_of: Vec<f64> =
+            if scales { gradients.iter().map(|m| uniform_scale(*m)).collect() } else { Vec::new() };
         let scale = |vertex: usize| if scales { scale_of[vertex] } else { 1.0 };
         let turned = without_shear(patch, gradients, &scale);
         go_on(0.5)?;
@@ -298,7 +298,8 @@ impl Binding {
             systems.reconstruct.solve(patch, &turned, displacements).map(|()| energy)
         };
         // Only edges have an energy that every plain pass lowers, by which a guess is judged.
-        let guesses = matches!(options.passes, Passes::Converged { .. }) && systems.reconstruct.lowers_energy() && !scales;
+        let guesses =
+            matches!(options.passes, Passes::Converged { .. }) && systems.reconstruct.lowers_energy() && !scales;
         let mut repeated = Repeated::new(tolerance * self.diagonal, most, guesses);
         repeated.run(&mut displacements, patch.free, &pass, &|fraction| go_on(0.5 + 0.5 * fraction))?;
         let last_move = if self.diagonal > 0.0 { repeated.last_move / self.diagonal } else { 0.0 };

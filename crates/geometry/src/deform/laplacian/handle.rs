@@ -137,8 +137,7 @@ impl HandleTransform {
         if !(finite && self.stretch.is_finite()) {
             return Err(HandleError::NotFinite);
         }
-        let lengths =
-            self.stretch.x_axis.length() * self.stretch.y_axis.length() * self.stretch.z_axis.length();
+        let lengths = self.stretch.x_axis.length() * self.stretch.y_axis.length() * self.stretch.z_axis.length();
         if self.stretch.determinant() > 1e-12 * lengths { Ok(()) } else { Err(HandleError::NotOriented) }
     }
 

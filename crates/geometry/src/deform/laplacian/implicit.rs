@@ -108,11 +108,7 @@ impl Implicit {
     }
 
     /// The deformation gradients less the identity at all vertices that have one.
-    pub fn gradients(
-        &self,
-        displacements: &[DVec3],
-        prescribed: &(dyn Fn(usize) -> DMat3 + Sync),
-    ) -> Vec<DMat3> {
+    pub fn gradients(&self, displacements: &[DVec3], prescribed: &(dyn Fn(usize) -> DMat3 + Sync)) -> Vec<DMat3> {
         let rows = &self.gradients.rows;
         let of = |vertex: usize| {
             if !self.gradients.wanted[vertex] {

@@ -150,12 +150,8 @@ pub(super) fn lower_triangle<Stop: Send>(
         let made: Vec<(Vec<usize>, Vec<usize>, Vec<f64>)> = chunks
             .into_par_iter()
             .map(|first| {
-                let mut column = Column {
-                    values: vec![0.0; unknowns],
-                    used: vec![u32::MAX; unknowns],
-                    rows: Vec::new(),
-                    column: 0,
-                };
+                let mut column =
+                    Column { values: vec![0.0; unknowns], used: vec![u32::MAX; unknowns], rows: Vec::new(), column: 0 };
                 let (mut counts, mut rows, mut values) = (Vec::new(), Vec::new(), Vec::new());
                 for index in first..unknowns.min(first + CHUNK) {
                     column.column = index as u32;

@@ -38,8 +38,7 @@ impl Gradients {
     /// vertices with two neighbours or with all neighbours on a line, for which the thesis inserts vertices, and the held
     /// ones.
     pub fn new(patch: &Patch) -> Result<Self, BindError> {
-        let wanted: Vec<bool> =
-            (0..patch.len()).map(|v| patch.gradient[v].is_none() && patch.ring[v] <= 2).collect();
+        let wanted: Vec<bool> = (0..patch.len()).map(|v| patch.gradient[v].is_none() && patch.ring[v] <= 2).collect();
         let mut points = patch.points.clone();
         let mut displaced = 0;
         for vertex in (0..patch.free).filter(|v| wanted[*v]) {

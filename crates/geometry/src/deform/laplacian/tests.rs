@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 
-use super::{BindError, BindOptions, Binding, DeformOptions, Deformed, Handle, HandleTransform, Holds, Passes, Reconstruction};
+use super::{
+    BindError, BindOptions, Binding, DeformOptions, Deformed, Handle, HandleTransform, Holds, Passes, Reconstruction,
+};
 use crate::mesh::select::Selection;
 use crate::mesh::{Mesh, Topology, measure};
 use std::sync::Arc;
@@ -59,7 +61,6 @@ pub(super) fn edge_error(before: &Mesh, after: &Mesh) -> f64 {
     let sum: f64 = topology.edges().map(|uses| change(uses[0].edge)).sum();
     (sum / topology.edge_count() as f64).sqrt()
 }
-
 
 /// Handles that hold positions and gradients.
 pub(super) fn both<const N: usize>(selections: [&Selection; N]) -> [Handle<'_>; N] {

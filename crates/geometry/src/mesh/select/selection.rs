@@ -141,7 +141,9 @@ impl Selection {
         let mut weights = self.0.clone();
         for _ in 0..times {
             let from = weights;
-            let of = |vertex: usize| pick(from[vertex], &mut adjacency.ring(vertex as u32).iter().map(|k| from[*k as usize]));
+            let of = |vertex: usize| {
+                pick(from[vertex], &mut adjacency.ring(vertex as u32).iter().map(|k| from[*k as usize]))
+            };
             weights = (0..from.len()).map(of).collect();
             if weights == from {
                 break;

@@ -94,11 +94,7 @@ pub fn by_normal(mesh: &Mesh, direction: DVec3, angle: f64, falloff: f64) -> Res
 }
 
 /// Of some vertices the one nearest to a point, of equal ones the first.
-fn nearest_of(
-    mesh: &Mesh,
-    point: DVec3,
-    vertices: impl Iterator<Item = usize>,
-) -> Result<Option<usize>, SelectError> {
+fn nearest_of(mesh: &Mesh, point: DVec3, vertices: impl Iterator<Item = usize>) -> Result<Option<usize>, SelectError> {
     if !point.is_finite() {
         return Err(SelectError::NotFinite { what: "point" });
     }

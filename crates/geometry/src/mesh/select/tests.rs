@@ -73,10 +73,8 @@ fn parts_and_borders_are_those_nearest_to_a_point() {
     assert_eq!(border, [0, 1, 2, 3, 4, 5, 9, 10, 14, 15, 19, 20, 21, 22, 23, 24]);
     assert_eq!(component_nearest(&Mesh::default(), near), Err(SelectError::NoPolygons));
     assert_eq!(component_nearest(&two, DVec3::NAN), Err(SelectError::NotFinite { what: "point" }));
-    let closed = Mesh::new(
-        vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z],
-        [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
-    );
+    let closed =
+        Mesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]);
     assert_eq!(boundary_loop_nearest(&closed.unwrap(), near), Err(SelectError::NoBoundary));
 }
 

@@ -111,8 +111,7 @@ fn four_positions_that_span_space_carry_an_affine_map() {
 fn a_gradient_alone_turns_what_is_held_elsewhere() {
     let mesh = bar(4, 16, true);
     let (low, high) = (select(&mesh, |p| p.y < 0.6), select(&mesh, |p| p.y > 3.6));
-    let handles =
-        [Handle { selection: &low, holds: Holds::Both }, Handle { selection: &high, holds: Holds::Gradient }];
+    let handles = [Handle { selection: &low, holds: Holds::Both }, Handle { selection: &high, holds: Holds::Gradient }];
     let turn = HandleTransform::rotation(DVec3::ZERO, DVec3::Z, 0.6);
     for reconstruction in [Reconstruction::Coordinates, Reconstruction::Edges] {
         let bound = bind(&mesh, &handles, reconstruction).unwrap();

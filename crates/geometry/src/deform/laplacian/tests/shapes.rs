@@ -86,9 +86,11 @@ fn vertices_with_two_neighbours_take_in_more_rings() {
     // Corners cut so that two vertices of the sheet have one triangle each.
     let at = |x: u32, z: u32| z * 9 + x;
     let triangles = (0..4_u32).flat_map(|z| {
-        (0..8_u32).flat_map(move |x| [[at(x, z), at(x, z + 1), at(x + 1, z)], [at(x + 1, z), at(x, z + 1), at(x + 1, z + 1)]])
+        (0..8_u32)
+            .flat_map(move |x| [[at(x, z), at(x, z + 1), at(x + 1, z)], [at(x + 1, z), at(x, z + 1), at(x + 1, z + 1)]])
     });
-    let points = (0..5).flat_map(|z| (0..9).map(move |x| DVec3::new(f64::from(x), 0.02 * f64::from(x * x), f64::from(z))));
+    let points =
+        (0..5).flat_map(|z| (0..9).map(move |x| DVec3::new(f64::from(x), 0.02 * f64::from(x * x), f64::from(z))));
     let mesh = Mesh::new(points.collect(), triangles).unwrap();
     let handle = select(&mesh, |p| (p.x - 4.0).abs() < 1.1);
     let bound = bind(&mesh, &both([&handle]), Reconstruction::Coordinates).unwrap();
