@@ -160,10 +160,10 @@ impl Implicit {
                 }
             }
         }
-        for vertex in 0..patch.free {
+        for (vertex, (gradient, coordinate)) in gradients.iter().zip(&self.coordinates).enumerate() {
             let mut residual: DVec3 = self.laplacians.row(vertex).map(|(k, r)| displacements[k] * r).sum();
             if !self.gradients.wanted[vertex] {
-                residual -= gradients[vertex] * self.coordinates[vertex];
+                residual -= *gradient * *coordinate;
             }
             for (k, r) in self.laplacians.row(vertex) {
                 if k < patch.free {

@@ -33,9 +33,9 @@ impl Reconstruct {
         let go_on = |done: f64| if progress(done) { Ok(()) } else { Err(BindError::Stopped) };
         go_on(0.0)?;
         let mut laplacians = Rows::new();
-        for vertex in 0..patch.len() {
+        for (vertex, weights) in weights.iter().enumerate() {
             // Without the rows of the handles' rims nothing says that the surface leaves a handle in its direction.
-            laplacians.push(if patch.ring[vertex] <= 1 { row(patch, vertex, &weights[vertex]) } else { Vec::new() });
+            laplacians.push(if patch.ring[vertex] <= 1 { row(patch, vertex, weights) } else { Vec::new() });
         }
         let free = patch.free;
         let columns = laplacians.transposed(free);

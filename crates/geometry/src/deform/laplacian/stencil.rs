@@ -57,8 +57,8 @@ impl Gradients {
         }
         let mut rows = Rows::new();
         let mut widened = 0;
-        for vertex in 0..patch.len() {
-            if !wanted[vertex] {
+        for (vertex, wanted) in wanted.iter().enumerate() {
+            if !wanted {
                 rows.push([]);
                 continue;
             }

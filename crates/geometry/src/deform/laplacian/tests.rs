@@ -113,6 +113,7 @@ pub(super) fn sheet(wide: u32, deep: u32) -> Mesh {
 }
 
 mod bars;
+mod formulas;
 mod held;
 mod invariances;
 mod shapes;

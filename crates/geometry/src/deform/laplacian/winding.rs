@@ -27,9 +27,9 @@ impl Winding {
     pub fn new(patch: &Patch, weights: &Rows<f64>) -> Result<Self, LinearSolverError> {
         let mut count = 0;
         let mut unknown = vec![None; patch.len()];
-        for vertex in 0..patch.len() {
+        for (vertex, place) in unknown.iter_mut().enumerate() {
             if patch.gradient[vertex].is_none() && patch.ring[vertex] <= 1 {
-                unknown[vertex] = Some(count);
+                *place = Some(count);
                 count += 1;
             }
         }
@@ -50,9 +50,7 @@ impl Winding {
             column.add_entries(std::iter::once((index, total + 1e-9 * (total + LEAST_WEIGHT))));
             column.add_entries(weights_of(vertex).filter_map(|(k, w)| place(k).map(|k| (k, -w))));
         };
-        let matrix = match lower_triangle::<std::convert::Infallible>(vertices.len(), fill, &|| Ok(())) {
-            Ok(matrix) => matrix,
-        };
+        let Ok(matrix) = lower_triangle::<std::convert::Infallible>(vertices.len(), fill, &|| Ok(()));
         Ok(Self { unknown, edges, factor: Cholesky::factor(&matrix)? })
     }
 

@@ -49,7 +49,8 @@ impl Selection {
 
     /// Weights as a function gives them, held between 0 and 1; one that is not a number counts as 0.
     pub fn weighted(vertices: usize, weight: impl Fn(usize) -> f64) -> Self {
-        Self((0..vertices).map(|vertex| weight(vertex).max(0.0).min(1.0)).collect())
+        let held = |weight: f64| if weight.is_nan() { 0.0 } else { weight.clamp(0.0, 1.0) };
+        Self((0..vertices).map(|vertex| held(weight(vertex))).collect())
     }
 
     /// The weights, one a vertex.
