@@ -305,8 +305,12 @@ impl Binding {
         let last_move = if self.diagonal > 0.0 { repeated.last_move / self.diagonal } else { 0.0 };
         let passes = repeated.passes;
         let points: Vec<DVec3> = patch.points.iter().zip(&displacements).map(|(p, u)| *p + *u).collect();
-        let last = systems.reconstruct.rotations(patch, &displacements, &prescribed);
-        let mesh = self.finished(transforms, &points, &last)?;
+        // Only normals ask how the surface turned in the end.
+        let turns = match self.mesh.normals() {
+            Some(_) => systems.reconstruct.rotations(patch, &displacements, &prescribed),
+            None => Vec::new(),
+        };
+        let mesh = self.finished(transforms, &points, &turns)?;
         Ok(Deformed { mesh, passes, last_move, wound })
     }
 

@@ -21,6 +21,8 @@ pub(super) struct Implicit {
     coordinates: Vec<DVec3>,
     /// Pairs of (2.7) at each vertex with a row: all vertices within two edges, one of both free.
     pairs: Rows<()>,
+    /// Vertices with a pair whose gradients feel held vertices: the only ones to disagree while the free ones rest.
+    rim: Vec<u32>,
     factor: Cholesky,
 }
 
@@ -54,6 +56,15 @@ impl Implicit {
             })
             .collect();
         let pairs = Rows::collect(pairs);
+        let feels = |vertex: usize| {
+            !gradients.wanted[vertex] || gradients.rows.columns(vertex).last().is_some_and(|k| *k as usize >= free)
+        };
+        let feels: Vec<bool> = (0..patch.len()).map(feels).collect();
+        let disagrees = |v: &u32| {
+            let others = pairs.columns(*v as usize);
+            !others.is_empty() && (feels[*v as usize] || others.iter().any(|other| feels[*other as usize]))
+        };
+        let rim: Vec<u32> = (0..patch.len() as u32).filter(disagrees).collect();
         go_on(0.2)?;
         let differences = differences(&gradients.rows, &pairs, free);
         go_on(0.3)?;
@@ -71,7 +82,7 @@ impl Implicit {
         go_on(0.6)?;
         let factor = Cholesky::factor(&matrix)?;
         go_on(1.0)?;
-        Ok(Self { gradients, laplacians, coordinates, pairs, factor })
+        Ok(Self { gradients, laplacians, coordinates, pairs, rim, factor })
     }
 
     /// Degenerate vertices displaced, and vertices whose gradient takes in more than one ring.
@@ -97,8 +108,8 @@ impl Implicit {
         refine: bool,
     ) -> Result<(), DeformError> {
         displacements[..patch.free].fill(DVec3::ZERO);
-        for _ in 0..1 + usize::from(refine) {
-            let mut sides = self.descent(patch, displacements, prescribed);
+        for again in 0..1 + usize::from(refine) {
+            let mut sides = self.descent(patch, displacements, prescribed, again == 0);
             self.factor.solve_points(&mut sides)?;
             for (displacement, more) in displacements.iter_mut().zip(sides) {
                 *displacement += more;
@@ -135,30 +146,34 @@ impl Implicit {
             .collect()
     }
 
-    /// Minus half the derivative of the sum of squares after the positions of the free vertices.
+    /// Minus half the derivative of the sum of squares after the positions of the free vertices; `at_rest` where these are
+    /// not displaced.
     fn descent(
         &self,
         patch: &Patch,
         displacements: &[DVec3],
         prescribed: &(dyn Fn(usize) -> DMat3 + Sync),
+        at_rest: bool,
     ) -> Vec<DVec3> {
         let gradients = self.gradients(displacements, prescribed);
         let mut sides = vec![DVec3::ZERO; patch.free];
-        let disagreements: Vec<DMat3> = (0..self.pairs.len())
-            .into_par_iter()
-            .with_min_len(1024)
-            .map(|vertex| {
-                let others = self.pairs.columns(vertex);
-                let sum = others.iter().fold(DMat3::ZERO, |sum, other| sum + gradients[*other as usize]);
-                gradients[vertex] * others.len() as f64 - sum
-            })
-            .collect();
-        for (vertex, disagreement) in disagreements.iter().enumerate() {
+        let disagreement = |vertex: usize| {
+            let others = self.pairs.columns(vertex);
+            let sum = others.iter().fold(DMat3::ZERO, |sum, other| sum + gradients[*other as usize]);
+            gradients[vertex] * others.len() as f64 - sum
+        };
+        let mut add = |vertex: usize, disagreement: &DMat3| {
             for (k, c) in self.gradients.rows.row(vertex) {
                 if k < patch.free {
                     sides[k] -= *disagreement * c;
                 }
             }
+        };
+        if at_rest {
+            self.rim.iter().for_each(|vertex| add(*vertex as usize, &disagreement(*vertex as usize)));
+        } else {
+            let all = (0..self.pairs.len()).into_par_iter().with_min_len(1024).map(disagreement);
+            all.collect::<Vec<_>>().iter().enumerate().for_each(|(vertex, d)| add(vertex, d));
         }
         for (vertex, (gradient, coordinate)) in gradients.iter().zip(&self.coordinates).enumerate() {
             let mut residual: DVec3 = self.laplacians.row(vertex).map(|(k, r)| displacements[k] * r).sum();
@@ -210,26 +225,34 @@ fn laplacian_row(
 
 /// `sum_j (M_i - M_j)` over the pairs of each vertex, as rows over the free vertices.
 fn differences(rows: &Rows<DVec3>, pairs: &Rows<()>, free: usize) -> Rows<DVec3> {
-    let made: Vec<Vec<(u32, DVec3)>> = (0..rows.len())
-        .into_par_iter()
-        .with_min_len(256)
-        .map(|vertex| {
-            let others = pairs.columns(vertex);
-            let count = others.len() as f64;
-            let own = rows.row(vertex).map(|(k, c)| (k as u32, c * count));
-            let theirs = others.iter().flat_map(|other| rows.row(*other as usize).map(|(k, c)| (k as u32, -c)));
-            let mut entries: Vec<(u32, DVec3)> = own.chain(theirs).filter(|(k, _)| (*k as usize) < free).collect();
-            // Stable, so that equal columns are summed in one order.
-            entries.sort_by_key(|(k, _)| *k);
-            entries.dedup_by(|from, to| {
-                let same = from.0 == to.0;
-                if same {
-                    to.1 += from.1;
-                }
-                same
-            });
-            entries
-        })
-        .collect();
-    Rows::collect(made)
+    // A value for each column, the row that last used it, and the columns of this row.
+    let empty = || (vec![DVec3::ZERO; free], vec![u32::MAX; free], Vec::<u32>::new());
+    let row = |(values, used, columns): &mut (Vec<DVec3>, Vec<u32>, Vec<u32>), vertex: usize| {
+        columns.clear();
+        let mut add = |column: usize, value: DVec3| {
+            if column >= free {
+                return;
+            }
+            if used[column] == vertex as u32 {
+                values[column] += value;
+            } else {
+                used[column] = vertex as u32;
+                values[column] = value;
+                columns.push(column as u32);
+            }
+        };
+        let others = pairs.columns(vertex);
+        for (column, value) in rows.row(vertex) {
+            add(column, value * others.len() as f64);
+        }
+        for other in others {
+            for (column, value) in rows.row(*other as usize) {
+                add(column, -value);
+            }
+        }
+        columns.sort_unstable();
+        columns.iter().map(|column| (*column, values[*column as usize])).collect::<Vec<_>>()
+    };
+    let made = (0..rows.len()).into_par_iter().with_min_len(4096).map_init(empty, row);
+    Rows::collect(made.collect())
 }
