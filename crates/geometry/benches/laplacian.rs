@@ -43,7 +43,7 @@ fn ring(around: u32, across: u32) -> Mesh {
 }
 
 fn deformation(c: &mut Criterion) {
-    for (name, around, across) in [("8k", 142, 64), ("50k", 360, 160)] {
+    for (name, around, across) in [("8k", 142, 64), ("50k", 360, 160), ("50k slender", 800, 70)] {
         let mesh = Arc::new(ring(around, across));
         let side = |sign: f64| Selection::by(mesh.positions().len(), |v| sign * mesh.positions()[v].x > 1.2);
         let (left, right) = (side(1.0), side(-1.0));
