@@ -83,6 +83,18 @@ impl HandleTransform {
         Ok(moved)
     }
 
+    /// A handle that brings the point `from` to `to`, its surroundings mapped by `linear`: for a handle of one vertex whose
+    /// position and gradient are known, as along a seam.
+    ///
+    /// # Errors
+    /// As [`HandleTransform::affine`].
+    pub fn carrying(from: DVec3, to: DVec3, linear: DMat3) -> Result<Self, HandleError> {
+        let moved = Self::affine(&DAffine3::from_mat3_translation(linear, DVec3::ZERO))?;
+        let moved = Self { pivot: from, translation: to - from, ..moved };
+        moved.check()?;
+        Ok(moved)
+    }
+
     /// The same, turned further by whole turns about its axis; about `axis` where it has none.
     #[must_use]
     pub fn wound(mut self, axis: DVec3, turns: i32) -> Self {
@@ -178,6 +190,16 @@ mod tests {
         assert!(moved.rotation_vector().distance(2.0 * DVec3::Y) < 1e-14);
         assert!(moved.check().is_ok());
         assert_eq!(HandleTransform::affine(&DAffine3::IDENTITY).unwrap(), HandleTransform::default());
+    }
+
+    #[test]
+    fn a_point_is_carried_with_its_surroundings() {
+        let linear = DMat3::from_quat(DQuat::from_axis_angle(DVec3::X, 1.0)) * 2.0;
+        let moved = HandleTransform::carrying(DVec3::ONE, DVec3::NEG_Y, linear).unwrap();
+        assert_eq!(moved.apply(DVec3::ONE), DVec3::NEG_Y);
+        assert!(moved.linear().abs_diff_eq(linear, 1e-14));
+        let lost = HandleTransform::carrying(DVec3::ONE, DVec3::NAN, linear);
+        assert_eq!(lost, Err(HandleError::NotFinite));
     }
 
     #[test]

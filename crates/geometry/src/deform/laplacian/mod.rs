@@ -27,6 +27,7 @@ mod binding;
 mod error;
 mod handle;
 mod implicit;
+mod options;
 mod patch;
 pub mod polar;
 mod reconstruct;
@@ -38,8 +39,7 @@ mod tests;
 mod well_posed;
 mod winding;
 
-pub use binding::{
-    BindOptions, BindReport, Binding, DeformOptions, Deformed, Features, Handle, Passes, Reconstruction,
-};
+pub use binding::Binding;
 pub use error::{BindError, DeformError};
 pub use handle::{HandleError, HandleTransform, Holds};
+pub use options::{BindOptions, BindReport, DeformOptions, Deformed, Features, Handle, Passes, Reconstruction};

@@ -3,8 +3,8 @@
 use glam::{DMat3, DVec3};
 use rayon::prelude::*;
 
-use super::binding::Reconstruction;
 use super::error::{BindError, DeformError};
+use super::options::Reconstruction;
 use super::patch::Patch;
 use super::polar::nearest_rotation;
 use super::rows::{Rows, lower_triangle};
