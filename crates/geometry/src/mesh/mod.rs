@@ -1,6 +1,7 @@
 //! Polygon meshes and what can be measured on them.
 
 pub mod check;
+pub mod crease;
 pub mod distance;
 pub(crate) mod ear_clipping;
 pub mod measure;

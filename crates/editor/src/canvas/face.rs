@@ -1,0 +1,189 @@
+//! What is drawn on a node: its name, how it stands with it, its flags, its ports.
+
+use egui::{Align, Color32, Layout, RichText, Ui};
+use maquette_graph::{Node, NodeId};
+
+use crate::command::{Command, FileCommand, GraphCommand, ViewCommand};
+use crate::evaluation_worker::NodeStatus;
+use crate::panel::PanelContext;
+
+use super::arrange::WIDTH;
+use super::ports::{self, Port};
+
+/// A duration in words that fit a node.
+pub(crate) fn time(duration: std::time::Duration) -> String {
+    let milliseconds = duration.as_secs_f64() * 1000.0;
+    match milliseconds {
+        ms if ms >= 1000.0 => format!("{:.1} s", ms / 1000.0),
+        ms if ms >= 10.0 => format!("{ms:.0} ms"),
+        ms if ms >= 0.05 => format!("{ms:.1} ms"),
+        _ => "0 ms".to_owned(),
+    }
+}
+
+/// A sign, its colour and words for how it stands with a node.
+pub(crate) fn status_sign(status: Option<&NodeStatus>, ui: &Ui) -> (&'static str, Color32, String) {
+    let visuals = ui.visuals();
+    let good = if visuals.dark_mode { Color32::from_rgb(110, 200, 120) } else { Color32::from_rgb(20, 120, 50) };
+    match status {
+        None => ("○", visuals.weak_text_color(), "not evaluated: nothing that is shown needs it".to_owned()),
+        Some(NodeStatus::Running(share)) => ("▶", visuals.hyperlink_color, format!("running, {:.0} %", share * 100.0)),
+        Some(NodeStatus::Done(duration)) => ("●", good, format!("done in {}", time(*duration))),
+        Some(NodeStatus::Hit) => ("●", good, "known: nothing that it depends on changed".to_owned()),
+        Some(NodeStatus::Failed { port, message }) => {
+            let at = port.as_ref().map(|port| format!("input \"{port}\": ")).unwrap_or_default();
+            ("✖", visuals.error_fg_color, format!("{at}{message}"))
+        }
+        Some(NodeStatus::Waiting(on)) => ("…", visuals.warn_fg_color, format!("waits for {}", on.join(", "))),
+        Some(NodeStatus::Stopped) => ("■", visuals.warn_fg_color, "stopped".to_owned()),
+    }
+}
+
+/// Draws the inside of a node and places its sockets.
+pub(crate) fn show(
+    ui: &mut Ui,
+    sockets: &mut egui_graph::SocketLayout,
+    context: &mut PanelContext<'_>,
+    id: NodeId,
+    node: &Node,
+) {
+    ui.set_width(WIDTH);
+    ui.spacing_mut().item_spacing = egui::vec2(4.0, 2.0);
+    ui.style_mut().interaction.selectable_labels = false;
+    let status = context.results.status(&context.path_of(node.name()));
+    let (sign, colour, words) = status_sign(status, ui);
+    let outcome = context.results.outcome(id).filter(|_| context.is_outermost());
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(sign).color(colour).size(12.0)).on_hover_text(&words);
+        let name = RichText::new(node.name()).strong();
+        let name = if node.is_muted() { name.strikethrough().weak() } else { name };
+        let summary = context.is_outermost().then(|| summary(context, id)).flatten().unwrap_or_default();
+        let kind = node.kind().map_or("unknown kind".to_owned(), |kind| kind.description().to_owned());
+        ui.add(egui::Label::new(name).truncate()).on_hover_text(format!("{}: {kind}{summary}", node.kind_name()));
+    });
+    ui.horizontal(|ui| {
+        ui.spacing_mut().button_padding = egui::vec2(3.0, 0.0);
+        let unknown = node.kind().is_none();
+        let kind = RichText::new(node.kind_name()).size(10.5);
+        let kind = if unknown { kind.color(ui.visuals().warn_fg_color) } else { kind.weak() };
+        ui.add(egui::Label::new(kind).truncate());
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if let Some(outcome) = outcome.filter(|outcome| !outcome.duration.is_zero()) {
+                ui.label(RichText::new(time(outcome.duration)).size(10.0).weak());
+            }
+            flags(ui, context, id, node);
+        });
+    });
+    if let Some(NodeStatus::Running(share)) = status {
+        #[expect(clippy::cast_possible_truncation, reason = "a share")]
+        ui.add(egui::ProgressBar::new(*share as f32).desired_height(3.0));
+    }
+    if matches!(status, Some(NodeStatus::Failed { .. })) {
+        let badge = RichText::new(&words).size(10.5).color(ui.visuals().error_fg_color);
+        ui.add(egui::Label::new(badge).truncate()).on_hover_text(&words);
+    }
+    let expanded = context.view.expanded.contains(&id);
+    for (socket, port) in ports::inputs(node).iter().enumerate().filter(|(_, port)| ports::is_shown(port, expanded)) {
+        sockets.row(ui, Some(socket), None, |ui| row(ui, port, false));
+    }
+    for (socket, port) in ports::outputs(context.graph(), id, node).iter().enumerate() {
+        sockets.row(ui, None, Some(socket), |ui| row(ui, port, true));
+    }
+}
+
+fn row(ui: &mut Ui, port: &Port, is_output: bool) {
+    let text = RichText::new(&port.name).size(11.5);
+    let text = if port.missing { text.color(ui.visuals().warn_fg_color) } else { text };
+    let wire = port.wire.map_or("unknown", |wire| wire.name());
+    let needed = if port.missing { "\nnothing is linked here, and something must be" } else { "" };
+    let hint = format!("{} ({wire}): {}{needed}", port.name, port.description);
+    let layout = if is_output { Layout::right_to_left(Align::Center) } else { Layout::left_to_right(Align::Center) };
+    ui.allocate_ui_with_layout(egui::vec2(WIDTH, 16.0), layout, |ui| {
+        ui.label(text).on_hover_text(hint);
+    });
+}
+
+/// What its outputs hold, in a few words.
+fn summary(context: &PanelContext<'_>, id: NodeId) -> Option<String> {
+    let values = context.results.values(id)?;
+    let lines = values.iter().map(|value| format!("\n{}: {}", value.wire().name(), value.summary()));
+    Some(lines.collect())
+}
+
+fn flags(ui: &mut Ui, context: &mut PanelContext<'_>, id: NodeId, node: &Node) {
+    let name = node.name();
+    let flag = |ui: &mut Ui, sign: &str, on: bool, what: &str, hint: &str| {
+        let sign = RichText::new(sign).size(10.0);
+        let response = ui.add(egui::Button::selectable(on, sign).small());
+        let label = format!("{what} {name}");
+        response.widget_info(|| egui::WidgetInfo::selected(egui::WidgetType::Checkbox, true, on, &label));
+        response.on_hover_text(hint).clicked()
+    };
+    let mut asked: Vec<Command> = Vec::new();
+    if ports::inputs(node).iter().any(|port| port.typed && !port.linked)
+        && flag(ui, "≡", context.view.expanded.contains(&id), "expand", "Show inputs that hold values")
+    {
+        asked.push(ViewCommand::Expand(id).into());
+    }
+    if node.body().is_some_and(|body| body.graph().is_some())
+        && flag(ui, "↘", false, "enter", "Enter the graph within (Enter)")
+    {
+        asked.push(ViewCommand::Enter(id).into());
+    }
+    if context.is_outermost() {
+        let pinned = context.view.pinned.contains(&id);
+        if flag(ui, "📌", pinned, "pin", "Keep showing it behind what is displayed") {
+            asked.push(ViewCommand::Pin(id).into());
+        }
+        let displayed = context.view.displayed == Some(id);
+        if flag(ui, "👁", displayed, "display", "Show only this node in the views (D)") {
+            asked.push(ViewCommand::Display(id).into());
+        }
+    }
+    context.commands.extend(asked);
+}
+
+/// What can be done with the selected nodes, as a menu.
+pub(crate) fn menu(ui: &mut Ui, context: &mut PanelContext<'_>, id: NodeId, node: &Node) {
+    let mut item = |ui: &mut Ui, text: &str, keys: &str, command: Command| {
+        if ui.add(egui::Button::new(text).shortcut_text(keys)).clicked() {
+            context.commands.push(command);
+            ui.close();
+        }
+    };
+    if node.body().is_some_and(|body| body.graph().is_some()) {
+        item(ui, "Enter", "Enter", ViewCommand::Enter(id).into());
+        item(ui, "Ungroup", "Ctrl+Shift+G", GraphCommand::Ungroup.into());
+        ui.separator();
+    }
+    item(ui, "Display", "D", ViewCommand::Display(id).into());
+    item(ui, "Pin", "P", ViewCommand::Pin(id).into());
+    item(ui, if node.is_muted() { "Unmute" } else { "Mute" }, "M", GraphCommand::Mute.into());
+    ui.separator();
+    item(ui, "Duplicate", "Ctrl+D", GraphCommand::Duplicate { keep_links: false }.into());
+    item(ui, "Duplicate with links", "Ctrl+Shift+D", GraphCommand::Duplicate { keep_links: true }.into());
+    item(ui, "Copy", "Ctrl+C", GraphCommand::Copy.into());
+    item(ui, "Cut", "Ctrl+X", GraphCommand::Cut.into());
+    item(ui, "Group", "Ctrl+G", GraphCommand::Group.into());
+    ui.separator();
+    item(ui, "Dissolve", "Ctrl+Backspace", GraphCommand::Dissolve.into());
+    item(ui, "Delete", "Delete", GraphCommand::Delete.into());
+    ui.menu_button("Replace by", |ui| {
+        let kinds: Vec<String> = context.catalogue.kinds().map(|kind| kind.name().to_owned()).collect();
+        egui::ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
+            for kind in kinds.iter().filter(|kind| *kind != node.kind_name()) {
+                if ui.button(kind).clicked() {
+                    context.commands.push(GraphCommand::Replace(kind.clone()).into());
+                    ui.close();
+                }
+            }
+        });
+    });
+    if let Some(maquette_graph::BodySource::File(file)) = node.body().map(|body| body.source()) {
+        let path = context.document.folder().join(file);
+        if ui.button("Open its file").clicked() {
+            context.commands.push(FileCommand::Open(path).into());
+            ui.close();
+        }
+    }
+}
