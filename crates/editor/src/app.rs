@@ -13,7 +13,6 @@ use crate::dialog::{Answer, Asking};
 use crate::dock::{self, Pane};
 use crate::document::{Document, ProjectChoice};
 use crate::evaluation_worker::{EvaluationWorker, Job};
-use crate::panel::PanelContext;
 use crate::panel::data::Data;
 use crate::panel::inspector::Inspector;
 use crate::panel::palette::Palette;
@@ -180,15 +179,20 @@ impl App {
         self.recovery.save(&self.document)
     }
 
-    pub(crate) fn panel_context(&mut self) -> PanelContext<'_> {
-        PanelContext {
-            catalogue: &self.catalogue,
-            document: &self.document,
-            results: &self.results,
-            view: &self.view,
-            settings: &mut self.settings,
-            commands: &mut self.commands,
-        }
+    /// What the canvas covers on the screen; for tests.
+    pub fn canvas_on_screen(&self) -> Option<egui::Rect> {
+        self.canvas.rect
+    }
+
+    /// What a node of the canvas covers on the screen; for tests, because rectangles of the accessibility tree know nothing of
+    /// the zoom.
+    pub fn node_on_screen(&self, node: NodeId) -> Option<egui::Rect> {
+        self.canvas.node_on_screen(self.canvas_graph(), &self.view.path, node)
+    }
+
+    /// Where a socket of a node of the canvas is on the screen: that of an input, or else of an output, of this name.
+    pub fn socket_on_screen(&self, context: &egui::Context, node: NodeId, port: &str) -> Option<egui::Pos2> {
+        self.canvas.socket_on_screen(context, self.canvas_graph(), &self.view.path, node, port)
     }
 
     pub(crate) fn is_over_canvas(&self, context: &egui::Context) -> bool {
@@ -312,6 +316,16 @@ impl eframe::App for App {
             context.request_repaint_after(wait);
         }
         self.title(&context);
+    }
+
+    fn raw_input_hook(&mut self, context: &egui::Context, input: &mut egui::RawInput) {
+        // On the canvas the wheel zooms, as in the views, without another key.
+        let over = self.is_over_canvas(context) && !egui::Popup::is_any_open(context);
+        for event in input.events.iter_mut().filter(|_| over) {
+            if let egui::Event::MouseWheel { modifiers, .. } = event {
+                *modifiers |= egui::Modifiers::COMMAND;
+            }
+        }
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {

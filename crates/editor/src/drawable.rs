@@ -40,8 +40,6 @@ pub(crate) struct Surface {
     pub(crate) triangles: Vec<[u32; 3]>,
     /// Its edges, each once.
     pub(crate) wire: Vec<Segment>,
-    /// Polygons of the mesh it was made of.
-    pub(crate) polygons: usize,
     /// Size of the curvature that deserves the strongest colour, 1/m.
     pub(crate) curvature_scale: f32,
 }
@@ -49,7 +47,6 @@ pub(crate) struct Surface {
 /// A line, ready to be drawn and picked.
 #[derive(Debug)]
 pub(crate) struct Line {
-    pub(crate) name: String,
     pub(crate) points: Vec<Vec3>,
     pub(crate) closed: bool,
     pub(crate) role: LineRole,
@@ -177,13 +174,7 @@ fn of_mesh(mesh: &Mesh, material: Option<&Material>, curvature: bool) -> Drawabl
     sizes.sort_by(f64::total_cmp);
     // One wild vertex must not take the colour from all others.
     let scale = sizes.get(sizes.len() * 95 / 100).copied().unwrap_or(1.0).max(1e-6);
-    let surface = Surface {
-        vertices: vertices.collect(),
-        triangles,
-        wire,
-        polygons: mesh.polygon_count(),
-        curvature_scale: scale as f32,
-    };
+    let surface = Surface { vertices: vertices.collect(), triangles, wire, curvature_scale: scale as f32 };
     Drawable {
         id: fresh_id(),
         bounds: bounds((0..mesh.corners().len()).map(place)),
@@ -196,7 +187,6 @@ fn of_mesh(mesh: &Mesh, material: Option<&Material>, curvature: bool) -> Drawabl
 #[expect(clippy::cast_possible_truncation, reason = "the graphics card takes single precision")]
 fn of_curves(curves: &[Curve], colour: Option<[f64; 4]>) -> Drawable {
     let line = |curve: &Curve| Line {
-        name: curve.name().to_owned(),
         points: curve.points().iter().map(|p| p.as_vec3()).collect(),
         closed: curve.is_closed(),
         role: LineRole::Curve,
@@ -212,14 +202,9 @@ fn of_curves(curves: &[Curve], colour: Option<[f64; 4]>) -> Drawable {
 
 fn of_sections(sections: &maquette_geometry::sections::Sections) -> Drawable {
     let single = |points: &[DVec3]| points.iter().map(|p| p.as_vec3()).collect::<Vec<_>>();
-    let rows = sections.iter().enumerate().map(|(index, row)| Line {
-        name: format!("section {index}"),
-        points: single(row),
-        closed: sections.is_closed(),
-        role: LineRole::Section,
-    });
-    let rails = sections.rails().iter().enumerate().map(|(index, rail)| Line {
-        name: format!("rail {index}"),
+    let rows =
+        sections.iter().map(|row| Line { points: single(row), closed: sections.is_closed(), role: LineRole::Section });
+    let rails = sections.rails().iter().map(|rail| Line {
         points: sections.iter().filter_map(|row| row.get(*rail)).map(|p| p.as_vec3()).collect(),
         closed: false,
         role: LineRole::Rail,

@@ -7,8 +7,7 @@ use maquette_geometry::mesh::{Mesh, triangles};
 /// boundaries, where it is not defined, and at vertices that no triangle uses.
 ///
 /// Method: the cotangent Laplacian over mixed areas (M. Meyer, M. Desbrun, P. Schroeder, A. Barr 2003, "Discrete
-/// differential-geometry operators for triangulated 2-manifolds"), with a third of the triangles' areas in place of the mixed
-/// ones. On a sphere with triangles of even size the error is below 2 %; slivers make it larger.
+/// differential-geometry operators for triangulated 2-manifolds"). On a sphere with triangles of even size the error is below 2 %; slivers make it larger.
 pub(crate) fn mean_curvature(mesh: &Mesh) -> Vec<f64> {
     let count = mesh.positions().len();
     let mut laplacian = vec![DVec3::ZERO; count];
@@ -23,15 +22,21 @@ pub(crate) fn mean_curvature(mesh: &Mesh) -> Vec<f64> {
         if area <= 0.0 || !area.is_finite() {
             continue;
         }
-        for (k, at) in [a, b, c].into_iter().enumerate() {
+        let points = [a, b, c];
+        let sides = |k: usize| (points[(k + 1) % 3] - points[k], points[(k + 2) % 3] - points[k]);
+        let cotangents = [0, 1, 2].map(|k| sides(k).0.dot(sides(k).1) / (2.0 * area));
+        let obtuse = cotangents.iter().position(|cotangent| *cotangent < 0.0);
+        for k in 0..3 {
             let [i, j] = [(k + 1) % 3, (k + 2) % 3];
-            let (p, q) = ([a, b, c][i], [a, b, c][j]);
-            let cotangent = (p - at).dot(q - at) / (2.0 * area);
-            let (vi, vj) = (vertices[i] as usize, vertices[j] as usize);
-            laplacian[vi] += 0.5 * cotangent * (p - q);
-            laplacian[vj] += 0.5 * cotangent * (q - p);
-            let vertex = vertices[k] as usize;
-            areas[vertex] += area / 3.0;
+            let (vi, vj, vertex) = (vertices[i] as usize, vertices[j] as usize, vertices[k] as usize);
+            laplacian[vi] += 0.5 * cotangents[k] * (points[i] - points[j]);
+            laplacian[vj] += 0.5 * cotangents[k] * (points[j] - points[i]);
+            let (to_i, to_j) = sides(k);
+            areas[vertex] += match obtuse {
+                None => (to_i.length_squared() * cotangents[j] + to_j.length_squared() * cotangents[i]) / 8.0,
+                Some(wide) if wide == k => area / 2.0,
+                Some(_) => area / 4.0,
+            };
             normals[vertex] += twice;
             edges.push([vertices[i].min(vertices[j]), vertices[i].max(vertices[j])]);
         }

@@ -295,6 +295,7 @@ impl Panes<'_> {
                 }
             }
             _ => {
+                ui.painter().rect_filled(rect, 0.0, ui.visuals().panel_fill);
                 egui::Frame::new().inner_margin(egui::Margin::same(8)).show(ui, |ui| match pane {
                     Pane::Inspector => self.inspector.show(ui, context),
                     Pane::Palette => {
@@ -334,6 +335,7 @@ impl Behavior<Pane> for Panes<'_> {
     }
 
     fn simplification_options(&self) -> SimplificationOptions {
+        // A view without a tab says itself what it is.
         SimplificationOptions { all_panes_must_have_tabs: false, ..SimplificationOptions::default() }
     }
 }

@@ -7,8 +7,10 @@ use maquette_graph::{Graph, NodeId, Source};
 
 use super::ports;
 
-/// Width of a node on the canvas, points.
+/// Width of what is in a node, points.
 pub(crate) const WIDTH: f32 = 172.0;
+/// What its frame adds to the width, points.
+const FRAME: f32 = 20.0;
 /// Height of a node without ports, points.
 const HEAD: f32 = 46.0;
 /// Height of a port, points.
@@ -21,7 +23,7 @@ pub(crate) fn size(graph: &Graph, id: NodeId) -> egui::Vec2 {
         inputs + ports::outputs(graph, id, node).len()
     });
     #[expect(clippy::cast_precision_loss, reason = "a few ports")]
-    egui::vec2(WIDTH, HEAD + ROW * rows as f32)
+    egui::vec2(WIDTH + FRAME, HEAD + ROW * rows as f32)
 }
 
 fn key(id: NodeId) -> egui_graph::NodeId {

@@ -66,6 +66,33 @@ impl Canvas {
         [f64::from(point.x), f64::from(point.y)]
     }
 
+    /// What a node covers on the screen.
+    pub(crate) fn node_on_screen(&self, graph: &Graph, path: &[NodeId], node: NodeId) -> Option<Rect> {
+        let place = *self.places.get(path)?.view.layout.get(&key(node))?;
+        graph.node(node)?;
+        Some(self.to_canvas.inverse() * Rect::from_min_size(place, arrange::size(graph, node)))
+    }
+
+    /// Where a socket is on the screen.
+    pub(crate) fn socket_on_screen(
+        &self,
+        context: &egui::Context,
+        graph: &Graph,
+        path: &[NodeId],
+        node: NodeId,
+        port: &str,
+    ) -> Option<Pos2> {
+        let held = graph.node(node)?;
+        let index = |ports: Vec<ports::Port>| ports.iter().position(|known| known.name == port);
+        let (input, output) = (index(ports::inputs(held)), index(ports::outputs(graph, node, held)));
+        let place = egui_graph::with_graph_memory(context, egui_graph::id(("canvas", path)), |memory| {
+            let sockets = memory.node_sockets().get(&key(node))?;
+            let input = input.and_then(|input| sockets.input(input));
+            input.or_else(|| sockets.output(output?)).map(|(place, _)| place)
+        })?;
+        Some(self.to_canvas.inverse() * place)
+    }
+
     /// Opens the search at a point of the screen, or closes it.
     pub(crate) fn toggle_search(&mut self, screen: Pos2) {
         self.search = match self.search {
@@ -85,13 +112,14 @@ impl Canvas {
             places.frame(graph, rect);
             self.frame_all = false;
         }
-        let mut widget =
-            egui_graph::Graph::new(("canvas", &context.view.path)).zoom_range(0.1..=1.5).dot_grid_step(20.0);
+        let mut widget = egui_graph::Graph::from_id(egui_graph::id(("canvas", context.view.path.as_slice())))
+            .zoom_range(0.1..=1.5)
+            .dot_grid_step(20.0);
         if places.selection != context.view.selection {
             places.selection.clone_from(&context.view.selection);
             widget = widget.selected_nodes(places.selection.iter().map(|id| key(*id)).collect::<HashSet<_>>());
         }
-        let graph_id = egui_graph::id(("canvas", &context.view.path));
+        let graph_id = egui_graph::id(("canvas", context.view.path.as_slice()));
         let shown = widget.show(&mut places.view, ui, |ui, show| {
             self.to_canvas = ui.ctx().layer_transform_from_global(ui.layer_id()).unwrap_or_default();
             let mut seen = links::Seen::default();

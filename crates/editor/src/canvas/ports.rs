@@ -17,6 +17,8 @@ pub(crate) struct Port {
     pub(crate) typed: bool,
     /// Whether nothing comes in although something must.
     pub(crate) missing: bool,
+    /// Whether it is one of several that wait for a link, behind the first of its type.
+    pub(crate) spare: bool,
 }
 
 /// The inputs of a node.
@@ -32,10 +34,17 @@ pub(crate) fn inputs(node: &Node) -> Vec<Port> {
                 linked: linked(name),
                 typed: !linked(name),
                 missing: false,
+                spare: false,
             })
             .collect();
     };
+    let mut waiting: Vec<WireType> = Vec::new();
     let port = |input: &maquette_graph::InputSpec| {
+        let free = input.optional && node.source(&input.name).is_none();
+        let spare = free && waiting.contains(&input.wire);
+        if free {
+            waiting.push(input.wire);
+        }
         let held = node.source(&input.name);
         Port {
             name: input.name.clone(),
@@ -44,6 +53,7 @@ pub(crate) fn inputs(node: &Node) -> Vec<Port> {
             linked: matches!(held, Some(Source::Link(_))),
             typed: LiteralKind::of_wire(input.wire).is_some(),
             missing: held.is_none() && input.default.is_none() && !input.optional,
+            spare,
         }
     };
     kind.inputs().iter().map(port).collect()
@@ -58,6 +68,7 @@ pub(crate) fn outputs(graph: &Graph, id: NodeId, node: &Node) -> Vec<Port> {
         linked: false,
         typed: false,
         missing: false,
+        spare: false,
     };
     match node.kind() {
         Some(kind) => kind
@@ -80,7 +91,7 @@ pub(crate) fn outputs(graph: &Graph, id: NodeId, node: &Node) -> Vec<Port> {
 
 /// Whether the row of an input is shown.
 pub(crate) fn is_shown(port: &Port, expanded: bool) -> bool {
-    expanded || port.linked || !port.typed
+    expanded || port.linked || (!port.typed && !port.spare)
 }
 
 /// Colour of a type on the canvas: of the common ones by hand, of all others by their name, so that a new type has one too.
