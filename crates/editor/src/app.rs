@@ -190,9 +190,15 @@ impl App {
         self.canvas.node_on_screen(self.canvas_graph(), &self.view.path, node)
     }
 
-    /// Where a socket of a node of the canvas is on the screen: that of an input, or else of an output, of this name.
-    pub fn socket_on_screen(&self, context: &egui::Context, node: NodeId, port: &str) -> Option<egui::Pos2> {
-        self.canvas.socket_on_screen(context, self.canvas_graph(), &self.view.path, node, port)
+    /// Where the socket of an input of a node of the canvas is on the screen, or that of an output.
+    pub fn socket_on_screen(
+        &self,
+        context: &egui::Context,
+        node: NodeId,
+        port: &str,
+        output: bool,
+    ) -> Option<egui::Pos2> {
+        self.canvas.socket_on_screen(context, self.canvas_graph(), &self.view.path, (node, port, output))
     }
 
     pub(crate) fn is_over_canvas(&self, context: &egui::Context) -> bool {

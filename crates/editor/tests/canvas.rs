@@ -45,7 +45,7 @@ fn a_chain_is_built_by_search_and_drag_and_undone_to_nothing() {
     drop(window);
     window = built();
     assert_eq!(names(&window), ["sketch", "resample", "curves-out"]);
-    let way = way(socket(&window, "sketch", "curves"), socket(&window, "resample", "curves"), 8);
+    let way = way(output(&window, "sketch", "curves"), input(&window, "resample", "curves"), 8);
     drag(&mut window, &way);
     assert_eq!(link(&window, "resample", "curves").as_deref(), Some("sketch.curves"), "{}", message(&window));
     let full = text(&window);
@@ -67,7 +67,7 @@ fn a_wrong_link_is_refused_at_the_pointer() {
     let canvas = canvas(&window);
     add(&mut window, "mesh-out", canvas.min + vec2(canvas.width() * 0.4, canvas.height() * 0.6));
     let before = text(&window);
-    let points = way(socket(&window, "sketch", "curves"), socket(&window, "mesh-out", "mesh"), 8);
+    let points = way(output(&window, "sketch", "curves"), input(&window, "mesh-out", "mesh"), 8);
     let press = |pressed, pos| Event::PointerButton {
         pos,
         button: PointerButton::Primary,
@@ -95,7 +95,7 @@ fn a_link_into_the_void_offers_what_fits_and_links_it() {
     let mut window = built();
     let canvas = canvas(&window);
     let void = canvas.min + vec2(canvas.width() * 0.3, canvas.height() * 0.85);
-    let way = way(socket(&window, "sketch", "curves"), void, 8);
+    let way = way(output(&window, "sketch", "curves"), void, 8);
     drag(&mut window, &way);
     window.run_steps(3);
     window.get_by_label("add resample");
@@ -111,11 +111,11 @@ fn a_link_into_the_void_offers_what_fits_and_links_it() {
 #[test]
 fn a_node_dropped_on_a_link_is_led_through_it() {
     let mut window = built();
-    let path = way(socket(&window, "resample", "curves"), socket(&window, "curves-out", "curves"), 8);
+    let path = way(output(&window, "resample", "curves"), input(&window, "curves-out", "curves"), 8);
     drag(&mut window, &path);
     let canvas = canvas(&window);
     add(&mut window, "smooth", canvas.min + vec2(canvas.width() * 0.5, canvas.height() * 0.8));
-    let ends = [socket(&window, "resample", "curves"), socket(&window, "curves-out", "curves")];
+    let ends = [output(&window, "resample", "curves"), input(&window, "curves-out", "curves")];
     let begin = node_middle(&window, "smooth");
     let middle = window.state().node_on_screen(find(&window, "smooth")).unwrap().center();
     let goal = ends[0].lerp(ends[1], 0.5) + (begin - middle);
@@ -128,17 +128,17 @@ fn a_node_dropped_on_a_link_is_led_through_it() {
 fn links_are_cut_by_a_line_across_them_and_pulled_off_their_inputs() {
     let mut window = built();
     for [from, to] in [["sketch", "resample"], ["resample", "curves-out"]] {
-        let way = way(socket(&window, from, "curves"), socket(&window, to, "curves"), 8);
+        let way = way(output(&window, from, "curves"), input(&window, to, "curves"), 8);
         drag(&mut window, &way);
     }
-    let middle = socket(&window, "sketch", "curves").lerp(socket(&window, "resample", "curves"), 0.5);
+    let middle = output(&window, "sketch", "curves").lerp(input(&window, "resample", "curves"), 0.5);
     let cut = way(middle + vec2(4.0, -60.0), middle + vec2(-4.0, 60.0), 12);
     drag_with(&mut window, PointerButton::Secondary, &cut, Modifiers::NONE);
     assert_eq!(link(&window, "resample", "curves"), None);
     assert!(link(&window, "curves-out", "curves").is_some());
     let canvas = canvas(&window);
     let void = canvas.min + vec2(canvas.width() * 0.6, canvas.height() * 0.9);
-    let pull = way(socket(&window, "curves-out", "curves"), void, 8);
+    let pull = way(input(&window, "curves-out", "curves"), void, 8);
     drag(&mut window, &pull);
     assert_eq!(link(&window, "curves-out", "curves"), None);
 }

@@ -40,7 +40,8 @@ fn select(window: &mut Window, node: &str) {
 fn a_stroke_in_an_empty_graph_becomes_a_sketch_in_the_plane_of_the_view() {
     let mut window = window(Options::default());
     press(&mut window, Modifiers::NONE, Key::S);
-    let arc: Vec<[f64; 3]> = (0..=10).map(|k| (f64::from(k) * 0.3).sin_cos()).map(|(s, c)| [0.3 * s, 1.0 + 0.3 * c, 0.0]).collect();
+    let arc: Vec<[f64; 3]> =
+        (0..=10).map(|k| (f64::from(k) * 0.3).sin_cos()).map(|(s, c)| [0.3 * s, 1.0 + 0.3 * c, 0.0]).collect();
     let line = pen(&window, Direction::Front, "Front view", &arc);
     drag(&mut window, &line);
     settle(&mut window);
@@ -55,8 +56,10 @@ fn a_stroke_in_an_empty_graph_becomes_a_sketch_in_the_plane_of_the_view() {
         assert!(off < 0.012, "{point:?} is {off} m off");
     }
     // A second stroke goes into the same sketch, and one that ends where it began is closed.
-    let ring: Vec<[f64; 3]> =
-        (0..=24).map(|k| (f64::from(k) * 15.0).to_radians().sin_cos()).map(|(s, c)| [0.1 * s, 0.4 + 0.1 * c, 0.0]).collect();
+    let ring: Vec<[f64; 3]> = (0..=24)
+        .map(|k| (f64::from(k) * 15.0).to_radians().sin_cos())
+        .map(|(s, c)| [0.1 * s, 0.4 + 0.1 * c, 0.0])
+        .collect();
     let line = pen(&window, Direction::Front, "Front view", &ring);
     drag(&mut window, &line);
     let drawn = strokes(&window, "front sketch");
@@ -113,7 +116,8 @@ fn drawing_along_a_rail_draws_that_part_anew() {
     press(&mut window, Modifiers::NONE, Key::S);
     let z = 0.012;
     // Along the rail from 1.03 m to 1.27 m, bulging 2 cm outwards in the middle.
-    let line: Vec<[f64; 3]> = [(0.146, 1.03), (0.150, 1.09), (0.158, 1.15), (0.160, 1.21), (0.161, 1.27)].map(|(x, y)| [x, y, z]).into();
+    let line: Vec<[f64; 3]> =
+        [(0.146, 1.03), (0.150, 1.09), (0.158, 1.15), (0.160, 1.21), (0.161, 1.27)].map(|(x, y)| [x, y, z]).into();
     let line = pen(&window, Direction::Front, "Front view", &line);
     drag(&mut window, &line);
     settle(&mut window);
@@ -122,8 +126,8 @@ fn drawing_along_a_rail_draws_that_part_anew() {
     let points = &drawn[0].points;
     assert_eq!((points[0].x, points[0].y), (0.1657, 0.93), "its beginning stays");
     assert_eq!(points.last().map(|p| (p.x, p.y)), Some((0.088, 1.43)), "its end stays");
-    let waist = points.iter().filter(|p| (1.13..1.17).contains(&p.y)).map(|p| p.x).fold(0.0, f64::max);
-    assert!((waist - 0.158).abs() < 0.006, "{waist}");
+    let waist = points.iter().filter(|p| (1.09..1.21).contains(&p.y)).map(|p| p.x).fold(0.0, f64::max);
+    assert!((waist - 0.158).abs() < 0.006, "{waist}: {points:?}");
     assert_ne!(hash(&window, "vest"), before);
     assert_eq!(window.state().document().history().undo_name(), Some("correct a stroke"));
 }
@@ -147,7 +151,7 @@ fn erasing_shortens_a_stroke() {
 fn a_click_on_a_surface_or_a_stroke_selects_what_made_it() {
     let mut window = opened(&graph("vest.ron"));
     // On the belly of the vest, away from curves.
-    let place = seen(&window, Direction::Front, "Front view", [0.045, 1.0, 0.1]);
+    let place = seen(&window, Direction::Front, "Front view", [0.09, 1.0, 0.1]);
     click_at(&mut window, place);
     assert_eq!(window.state().view().active, Some(find(&window, "vest")));
     let place = seen(&window, Direction::Front, "Front view", [0.1615, 0.97, 0.012]);

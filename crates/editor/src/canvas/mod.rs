@@ -79,16 +79,15 @@ impl Canvas {
         context: &egui::Context,
         graph: &Graph,
         path: &[NodeId],
-        node: NodeId,
-        port: &str,
+        (node, port, output): (NodeId, &str, bool),
     ) -> Option<Pos2> {
         let held = graph.node(node)?;
         let index = |ports: Vec<ports::Port>| ports.iter().position(|known| known.name == port);
-        let (input, output) = (index(ports::inputs(held)), index(ports::outputs(graph, node, held)));
+        let index = index(if output { ports::outputs(graph, node, held) } else { ports::inputs(held) })?;
         let place = egui_graph::with_graph_memory(context, egui_graph::id(("canvas", path)), |memory| {
             let sockets = memory.node_sockets().get(&key(node))?;
-            let input = input.and_then(|input| sockets.input(input));
-            input.or_else(|| sockets.output(output?)).map(|(place, _)| place)
+            let place = if output { sockets.output(index) } else { sockets.input(index) };
+            place.map(|(place, _)| place)
         })?;
         Some(self.to_canvas.inverse() * place)
     }

@@ -89,6 +89,9 @@ impl ViewPane {
         if let Some(framed) = framed {
             self.camera.frame_box(size, framed);
             self.framing = Framing::Keep;
+        } else if context.results.is_current() {
+            // Nothing will come by itself, and a first stroke must not move the view.
+            self.framing = Framing::Keep;
         }
     }
 
@@ -133,9 +136,9 @@ impl ViewPane {
                 && let Some(at) = response.interact_pointer_pos()
             {
                 let at = at - corner;
-                let found = sketch_at(context, &view, at).or_else(|| {
-                    pick::pick(context.results.shown(), &self.camera, size, at).filter(|_| context.is_outermost())
-                });
+                let shown = context.results.shown();
+                let found = sketch_at(context, &view, at)
+                    .or_else(|| pick::pick(shown, &self.camera, size, at).filter(|_| context.is_outermost()));
                 context.ask(ViewCommand::Select(found.into_iter().collect()));
             }
             return;
@@ -259,14 +262,19 @@ impl ViewPane {
 
 /// The sketch whose stroke is under the pointer.
 fn sketch_at(context: &PanelContext<'_>, view: &ToolView<'_>, at: egui::Vec2) -> Option<NodeId> {
+    let visible = pick::Visible::new(context.results.shown(), view.camera, view.size, at);
     let mut best: Option<(f32, NodeId)> = None;
     for target in SketchTarget::all(context.graph()) {
+        // What was drawn in this view can be picked in it through everything.
+        let flat = target.plane.view == view.camera.direction;
         for stroke in &target.strokes {
             let line = points(stroke);
             let joint = line.first().filter(|_| stroke.closed);
             let places = line.iter().chain(joint).map(|p| target.plane.place(*p));
-            if let Some(distance) = pick::line_distance(places, view.camera, view.size, at)
+            let near = pick::near_line(places, view.camera, view.size, at);
+            if let Some((distance, place)) = near
                 && distance <= pick::LINE_REACH
+                && (flat || visible.shows(place) || context.view.selection.contains(&target.node))
                 && best.is_none_or(|(least, _)| distance < least)
             {
                 best = Some((distance, target.node));

@@ -153,10 +153,19 @@ pub fn node_middle(window: &Window, name: &str) -> Pos2 {
     pos2(rect.center().x, rect.top() + 0.2 * rect.height().min(60.0))
 }
 
-/// A socket, a little outside of its node, where it can be grabbed.
-pub fn socket(window: &Window, node: &str, port: &str) -> Pos2 {
+/// The socket of an input, a little outside of its node, where it can be grabbed.
+pub fn input(window: &Window, node: &str, port: &str) -> Pos2 {
+    socket(window, node, port, false)
+}
+
+/// The same of an output.
+pub fn output(window: &Window, node: &str, port: &str) -> Pos2 {
+    socket(window, node, port, true)
+}
+
+fn socket(window: &Window, node: &str, port: &str, output: bool) -> Pos2 {
     let id = find(window, node);
-    let place = window.state().socket_on_screen(&window.ctx, id, port);
+    let place = window.state().socket_on_screen(&window.ctx, id, port, output);
     let place = place.unwrap_or_else(|| panic!("{node} shows no socket {port}"));
     let middle = window.state().node_on_screen(id).unwrap().center();
     place + vec2((place.x - middle.x).signum() * 3.0, 0.0)
