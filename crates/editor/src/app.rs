@@ -179,7 +179,12 @@ impl App {
         self.recovery.save(&self.document)
     }
 
-    /// What the canvas covers on the screen; for tests.
+    /// What a view covers on the screen; for tests and pictures.
+    pub fn view_on_screen(&self, direction: Direction) -> Option<egui::Rect> {
+        self.views.iter().find(|view| view.camera.direction == direction)?.rect
+    }
+
+    /// What the canvas covers on the screen; for tests and pictures.
     pub fn canvas_on_screen(&self) -> Option<egui::Rect> {
         self.canvas.rect
     }

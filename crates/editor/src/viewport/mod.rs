@@ -54,15 +54,18 @@ pub(crate) struct ViewPane {
     pub(crate) camera: Camera,
     pub(crate) framing: Framing,
     tool: SketchTool,
+    /// What of the screen it covered in the last frame.
+    pub(crate) rect: Option<egui::Rect>,
 }
 
 impl ViewPane {
     pub(crate) fn new(direction: Direction) -> Self {
-        Self { camera: Camera::new(direction), framing: Framing::All, tool: SketchTool::default() }
+        Self { camera: Camera::new(direction), framing: Framing::All, tool: SketchTool::default(), rect: None }
     }
 
     pub(crate) fn show(&mut self, ui: &mut egui::Ui, context: &mut PanelContext<'_>, graphics: Graphics) {
         let rect = ui.available_rect_before_wrap();
+        self.rect = Some(rect);
         let direction = self.camera.direction;
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         let label = format!("{} view", direction.name());
