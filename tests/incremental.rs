@@ -63,6 +63,19 @@ fn a_changed_parameter_reruns_its_node_and_what_depends_on_it() {
 }
 
 #[test]
+fn a_looser_tolerance_that_gives_the_same_sections_makes_no_new_surface() {
+    let mut saved = Saved::load("forearm");
+    let mut evaluator = Evaluator::default();
+    assert_eq!(ran(&saved, &mut evaluator).len(), saved.graph.nodes().len());
+    let fitted = saved.node("fitted");
+    // The mean errors decide: all sections are within 2 % anyway.
+    saved.graph.set(fitted, "max-error", Literal::Number(0.0249)).unwrap();
+    assert_eq!(ran(&saved, &mut evaluator), ["fitted"]);
+    saved.graph.set(fitted, "mean-error", Literal::Number(0.002)).unwrap();
+    assert_eq!(ran(&saved, &mut evaluator), ["fit", "fitted", "forearm", "skin", "surface"]);
+}
+
+#[test]
 fn an_equal_result_stops_the_wave_and_undo_runs_nothing() {
     let mut saved = Saved::load("vest");
     let mut evaluator = Evaluator::default();

@@ -112,12 +112,18 @@ fn every_saved_graph_is_tested_here() {
         .filter(|path| path.extension().is_some_and(|e| e == "ron"))
         .map(|path| path.file_stem().unwrap().to_string_lossy().into_owned())
         .collect();
-    assert_eq!(saved, ["head", "leg", "legs", "neck", "vest"].map(str::to_owned).into(), "add a test for a new graph");
+    assert_eq!(
+        saved,
+        ["forearm", "from-template", "head", "hip", "leg", "legs", "neck", "open-strokes", "vest"]
+            .map(str::to_owned)
+            .into(),
+        "add a test for a new graph"
+    );
 }
 
 #[test]
 fn no_saved_graph_has_a_node_without_use() {
-    for name in ["vest", "head", "neck", "leg", "legs"] {
+    for name in ["vest", "head", "neck", "leg", "legs", "forearm", "from-template", "hip", "open-strokes"] {
         let saved = Saved::load(name);
         let used = saved.graph.upstream(&saved.graph.results());
         assert_eq!(used.len(), saved.graph.nodes().len(), "{name}");

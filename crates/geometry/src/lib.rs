@@ -5,11 +5,13 @@
 //! ends in `_degrees`. All mathematics is `f64`.
 
 pub mod beam;
+pub mod border;
 pub mod curve;
 pub mod deform;
 pub mod file_format;
 pub mod generate;
 pub mod mesh;
+pub mod primitive;
 pub mod scene;
 pub mod sections;
 pub mod surface;

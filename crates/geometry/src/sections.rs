@@ -1,5 +1,7 @@
 //! A stack of cross-sections with corresponding points: what generators make and surfaces are skinned through.
 
+pub mod order;
+
 use glam::DVec3;
 
 /// Sections in order, each with the same number of points; point `j` of one section corresponds to point `j` of the

@@ -106,13 +106,13 @@ fn segments_of_a_stack_are_alike() {
     };
     assert!((1..12).all(|i| kind(i) == kind(0)));
     let local: Vec<bool> = kind(0).iter().map(|(local, ..)| *local).collect();
-    assert_eq!(local, [false, true, false], "the short one with many harmonics: {:?}", kind(0));
+    assert_eq!(local, [true, true, false], "the short one and the one with many harmonics: {:?}", kind(0));
     let bound = |stack: &FittedStack| {
         let segments = stack.sections.iter().map(|fitted| &fitted.section.segments()[1]);
         segments.map(|segment| segment.series.derivative_bound(0)).fold(0.0, f64::max)
     };
     let never = fit_sections(&part("torso"), &FitOptions { local_angles: LocalAngles::Never, ..options }).unwrap();
-    assert!(bound(&never) > 10.0 * bound(&stack), "{} {}", bound(&never), bound(&stack));
+    assert!(bound(&never) > 2.0 * bound(&stack), "{} {}", bound(&never), bound(&stack));
 }
 
 #[test]

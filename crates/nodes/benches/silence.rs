@@ -186,9 +186,10 @@ fn shapes(c: &mut Criterion) {
     let curves = kind(&catalogue, "curves-from-sections");
     measure(c, "curves-from-sections: 512 x 512", || Harness::new(curves).give_value("sections", stack.clone()));
     let surface = kind(&catalogue, "surface-from-cross-sections");
+    let points = Value::new(wire::CrossSections::Points(sections(512, 512)));
     measure(c, "surface-from-cross-sections: 1024 x 1024 quads", || {
         Harness::new(surface)
-            .give_value("sections", stack.clone())
+            .give_value("sections", points.clone())
             .set("rows", Literal::Integer(2))
             .set("columns", Literal::Integer(2))
     });

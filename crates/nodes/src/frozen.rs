@@ -1,6 +1,7 @@
 //! How the wire types become plain data for golden files.
 
 use glam::{DVec2, DVec3};
+use maquette_geometry::border::Border;
 use maquette_geometry::curve::Curve;
 use maquette_geometry::mesh::Mesh;
 use maquette_geometry::scene::Material;
@@ -10,11 +11,18 @@ use maquette_graph::{Catalogue, Value};
 
 use crate::wire;
 
+mod analytic;
+
 /// Lets golden files hold values of all wire types of this library.
 pub(crate) fn register(catalogue: &mut Catalogue) {
     catalogue.freezable::<wire::Curve>();
     catalogue.freezable::<wire::Curves>();
     catalogue.freezable::<wire::Sections>();
+    catalogue.freezable::<wire::EllipticSections>();
+    catalogue.freezable::<wire::CrossSections>();
+    catalogue.freezable::<wire::Borders>();
+    catalogue.freezable::<wire::Shape>();
+    catalogue.freezable::<wire::Surface>();
     catalogue.freezable::<wire::Mesh>();
     catalogue.freezable::<wire::MeshResult>();
     catalogue.freezable::<wire::CurvesResult>();
@@ -180,5 +188,42 @@ impl Freeze for wire::CurvesResult {
 
     fn thaw(frozen: &Frozen) -> Result<Self, ThawError> {
         Ok(Self { curves: thaw_curves(frozen.field("curves")?)?, colour: four(frozen.field("colour")?)? })
+    }
+}
+
+impl Freeze for wire::Borders {
+    fn freeze(&self) -> Frozen {
+        let border = |border: &Border| {
+            Frozen::record([("curve", freeze_curve(border.curve())), ("directions", points(border.directions()))])
+        };
+        Frozen::List(self.0.iter().map(border).collect())
+    }
+
+    fn thaw(frozen: &Frozen) -> Result<Self, ThawError> {
+        let border = |frozen: &Frozen| {
+            let curve = thaw_curve(frozen.field("curve")?)?;
+            Border::new(curve, thawed_points(frozen.field("directions")?)?).map_err(no_value)
+        };
+        frozen.list()?.iter().map(border).collect::<Result<_, ThawError>>().map(Self)
+    }
+}
+
+impl Freeze for wire::Shape {
+    fn freeze(&self) -> Frozen {
+        match self {
+            Self::Mesh(mesh) => Frozen::record([("mesh", mesh.freeze())]),
+            Self::Surface(surface) => Frozen::record([("surface", surface.freeze())]),
+            Self::Sections(sections) => Frozen::record([("sections", sections.freeze())]),
+        }
+    }
+
+    fn thaw(frozen: &Frozen) -> Result<Self, ThawError> {
+        if let Ok(mesh) = frozen.field("mesh") {
+            return wire::Mesh::thaw(mesh).map(Self::Mesh);
+        }
+        if let Ok(surface) = frozen.field("surface") {
+            return wire::Surface::thaw(surface).map(Self::Surface);
+        }
+        wire::Sections::thaw(frozen.field("sections")?).map(Self::Sections)
     }
 }

@@ -1,6 +1,7 @@
 //! The planes in which an artist draws.
 
 use glam::{DVec2, DVec3};
+use maquette_geometry::mesh::stroke;
 use maquette_graph::Choices;
 
 /// A view, and with it a plane: front XY, side ZY, top XZ. +X is the model's left, +Y up, +Z its front; metres.
@@ -20,6 +21,15 @@ impl Choices for ViewPlane {
 }
 
 impl ViewPlane {
+    /// The direction in which it looks.
+    pub(crate) fn looks_along(self) -> DVec3 {
+        match self {
+            Self::Front => DVec3::NEG_Z,
+            Self::Side => DVec3::NEG_X,
+            Self::Top => DVec3::NEG_Y,
+        }
+    }
+
     /// The point in space of a point drawn in the plane.
     pub(crate) fn place(self, drawn: DVec2, offset: f64) -> DVec3 {
         match self {
@@ -61,4 +71,15 @@ impl MirrorPlane {
         let signs = self.signs();
         point * signs + (DVec3::ONE - signs) * offset
     }
+}
+
+/// Which side of a body is meant in a view.
+#[derive(Clone, Copy)]
+pub(crate) struct Facing(pub(crate) stroke::Facing);
+
+impl Choices for Facing {
+    const OPTIONS: &'static [(Self, &'static str, &'static str)] = &[
+        (Self(stroke::Facing::Seen), "seen", "the side that is seen"),
+        (Self(stroke::Facing::Back), "back", "the side that is farthest behind it"),
+    ];
 }

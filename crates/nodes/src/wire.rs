@@ -1,5 +1,13 @@
 //! The types that travel along wires.
 
+mod analytic;
+mod border;
+mod shape;
+
+pub use analytic::{CrossSections, EllipticSections, NamedSection, SectionFit, Surface};
+pub use border::Borders;
+pub use shape::Shape;
+
 use std::sync::Arc;
 
 use glam::DVec3;

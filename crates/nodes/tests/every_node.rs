@@ -7,12 +7,17 @@
 )]
 
 use std::collections::BTreeSet;
+use std::f64::consts::{PI, TAU};
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
+use maquette_geometry::border::Border;
 use maquette_geometry::curve::Curve;
 use maquette_geometry::mesh::Mesh;
 use maquette_geometry::sections::Sections;
+use maquette_geometry::surface::analytic::{AnalyticSurface, SurfaceOptions};
+use maquette_geometry::trigonometric::{EllipticSection, EllipticSegment, PlaneFrame, Series};
 use maquette_graph::{
     Catalogue, Evaluation, Evaluator, Graph, Literal, LiteralKind, NodeId, NodeKind, OutcomeState, Request, Stroke,
     StrokePoint, Wire, WireType,
@@ -55,6 +60,14 @@ fn square() -> Mesh {
     Mesh::new(corners, [[0_u32, 1, 2, 3]]).unwrap().with_uvs(uvs).unwrap()
 }
 
+/// An open tube of four walls, 2 m high.
+fn wall() -> Mesh {
+    let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
+    let row = |y: f64| corners.map(|(x, z)| DVec3::new(x, y, -z));
+    let quads = (0..4_u32).map(|k| [k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k]);
+    Mesh::new([row(0.0), row(2.0)].concat(), quads).unwrap()
+}
+
 /// A kind that gives a fixed value, for linking to inputs that take no literal.
 fn constant<T: Wire + Clone>(name: &str, value: T) -> NodeKind {
     let mut node = NodeKind::declare(name, 1, "test", "A fixed value.");
@@ -91,13 +104,108 @@ fn test_catalogue() -> Catalogue {
     for (index, sections) in [flat, open, huge].into_iter().enumerate() {
         catalogue.register(constant(&format!("nasty-sections-{index}"), wire::Sections(sections))).unwrap();
     }
+    let series = |coefficients: Vec<DVec3>, closed: bool| {
+        let to = if closed { TAU } else { PI };
+        let segment = EllipticSegment { from: 0.0, to, local: false, series: Series::new(coefficients).unwrap() };
+        let section = EllipticSection::new(PlaneFrame::new(DVec3::ZERO, DVec3::Y), closed, vec![segment]).unwrap();
+        wire::NamedSection { name: "made".to_owned(), section, fit: None }
+    };
+    let ellipse = |height: f64, size: f64| series(vec![DVec3::Y * height, DVec3::X * size, DVec3::NEG_Z * size], true);
+    let fit = wire::SectionFit {
+        mean: f64::NAN,
+        maximum: f64::INFINITY,
+        diagonal: 0.0,
+        met: false,
+        worst: DVec3::NAN,
+        worst_angle: -1e300,
+        worst_distance: f64::INFINITY,
+    };
+    let nasty_series: Vec<Vec<wire::NamedSection>> = vec![
+        vec![],
+        vec![ellipse(0.0, 1.0)],
+        vec![ellipse(0.0, 0.0), ellipse(1.0, 0.0)],
+        vec![ellipse(0.0, 1.0); 3],
+        vec![ellipse(0.0, 1e200), ellipse(1.0, 1e-200)],
+        vec![series(vec![DVec3::ZERO, DVec3::X, DVec3::Y], false), ellipse(1.0, 1.0)],
+        vec![series(vec![DVec3::ZERO], true), ellipse(1.0, 1.0), ellipse(0.5, 1.0)],
+        vec![series(vec![DVec3::X; 401], false), series(vec![DVec3::Y; 3], false)],
+        vec![wire::NamedSection { fit: Some(fit), ..ellipse(0.0, 1.0) }, ellipse(2.0, 1e-12)],
+    ];
+    for (index, sections) in nasty_series.into_iter().enumerate() {
+        let sections = wire::EllipticSections::new(sections);
+        let name = format!("nasty-elliptic-sections-{index}");
+        catalogue.register(constant(&name, sections.clone())).unwrap();
+        let name = format!("nasty-cross-sections-{index}");
+        catalogue.register(constant(&name, wire::CrossSections::Series(sections))).unwrap();
+    }
+    let tube_of = |sections: Vec<wire::NamedSection>| {
+        let sections = wire::EllipticSections::new(sections).sections();
+        AnalyticSurface::through(&sections, &SurfaceOptions::default()).unwrap()
+    };
+    let tall = tube_of(vec![ellipse(0.0, 1.0), ellipse(1.0, 1.2), ellipse(2.0, 1.0)]);
+    let spindle = tube_of(vec![ellipse(0.0, 0.0), ellipse(1.0, 1e9), ellipse(2.0, 0.0)]);
+    let sheet = tube_of([0.0, 1.0].map(|z| series(vec![DVec3::Z * z, DVec3::X, DVec3::Y], false)).to_vec());
+    let nasty_surfaces = [
+        wire::Surface::Series(vec![]),
+        wire::Surface::Points(Arc::new(tube())),
+        wire::Surface::Series(vec![spindle.clone()]),
+        wire::Surface::Series(vec![spindle, tall.clone(), sheet.clone()]),
+        wire::Surface::Series(vec![sheet]),
+    ];
+    for (index, surface) in nasty_surfaces.into_iter().enumerate() {
+        catalogue.register(constant(&format!("nasty-surface-{index}"), surface)).unwrap();
+    }
+    let met = wire::SectionFit {
+        mean: 0.001,
+        maximum: 0.002,
+        diagonal: 2.8,
+        met: true,
+        worst: DVec3::X,
+        worst_angle: 0.0,
+        worst_distance: 0.005,
+    };
+    let fitted = |height: f64, size: f64| wire::NamedSection { fit: Some(met.clone()), ..ellipse(height, size) };
+    let good = wire::EllipticSections::new(vec![fitted(0.0, 1.0), fitted(1.0, 1.2), fitted(2.0, 1.0)]);
+    catalogue.register(constant("good-cross-sections", wire::CrossSections::Series(good.clone()))).unwrap();
+    catalogue.register(constant("good-elliptic-sections", good)).unwrap();
+    catalogue.register(constant("good-surface", wire::Surface::Series(vec![tall]))).unwrap();
+    let border = |curve: Curve, direction: DVec3| {
+        let directions = vec![direction; curve.points().len()];
+        wire::Borders(vec![Border::new(curve, directions).unwrap()])
+    };
+    let nasty_borders = [
+        wire::Borders::default(),
+        border(rail("open", 0.0), DVec3::X),
+        border(circle("far", 1e200, 1e200), DVec3::Y),
+        border(circle("flat", 1e-200, 0.0), DVec3::Y),
+        wire::Borders([border(circle("a", 1.0, 0.0), DVec3::Y).0, border(circle("b", 2.0, 0.0), DVec3::Y).0].concat()),
+    ];
+    for (index, borders) in nasty_borders.into_iter().enumerate() {
+        catalogue.register(constant(&format!("nasty-borders-{index}"), borders)).unwrap();
+    }
+    catalogue.register(constant("good-borders", border(circle("ring", 1.0, 0.0), DVec3::Y))).unwrap();
+    catalogue.register(constant("good-shape", wire::Shape::Mesh(wire::Mesh::new(square())))).unwrap();
+    catalogue.register(constant("nasty-shape-0", wire::Shape::Mesh(wire::Mesh::new(Mesh::default())))).unwrap();
     catalogue.register(constant("nasty-mesh-0", wire::Mesh::new(Mesh::default()))).unwrap();
+    let rings = (0..5).map(|k| circle("", 1.0, f64::from(k))).collect();
+    catalogue.register(constant("for-order-sections-curves", wire::Curves(rings))).unwrap();
+    catalogue.register(constant("for-sections-from-mesh-mesh", wire::Mesh::new(wall()))).unwrap();
+    let bone = Curve::new("bone", vec![DVec3::Y * 0.1, DVec3::Y * 1.9], false).unwrap();
+    catalogue.register(constant("for-sections-from-mesh-bone", wire::Curve(bone))).unwrap();
     catalogue.register(constant("good-curves", wire::Curves(four_rails()))).unwrap();
+    let upright = circle("around", 0.5, 0.0).map(|p| DVec3::new(p.x, -p.z, 0.0)).unwrap();
+    let over = Curve::new("over", vec![DVec3::splat(0.25), DVec3::splat(0.75)], false).unwrap();
+    catalogue.register(constant("for-draw-on-surface-strokes", wire::Curves(vec![over]))).unwrap();
+    catalogue.register(constant("for-cut-with-curve-stroke", wire::Curve(upright))).unwrap();
     catalogue.register(constant("good-curve", wire::Curve(circle("ring", 1.2, 1.25)))).unwrap();
     catalogue.register(constant("good-sections", wire::Sections(tube()))).unwrap();
     catalogue.register(constant("good-mesh", wire::Mesh::new(square()))).unwrap();
     catalogue
 }
+
+/// Two joints.
+const SKELETON: &[u8] = br#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"skins":[{"joints":[0,1]}],
+"nodes":[{"name":"hip","children":[1]},{"name":"knee","translation":[0,-1,0]}]}"#;
 
 /// The constants that give this type, good or nasty.
 fn constants(catalogue: &Catalogue, wire: WireType, prefix: &str) -> Vec<String> {
@@ -116,6 +224,16 @@ fn shipped() -> Vec<String> {
     catalogue.kinds().filter(|kind| !kind.has_body()).map(|kind| kind.name().to_owned()).collect()
 }
 
+/// Whether an input that may stay unconnected is linked all the same: the node makes nothing of nothing.
+fn wanted(kind: &str, input: &str) -> bool {
+    match kind {
+        // One surface twice makes no chain.
+        "join-surfaces" => input == "a",
+        "edit-section" => input == "contour",
+        kind => kind.starts_with("join"),
+    }
+}
+
 /// A graph with one node of the kind under test, everything it needs linked or set.
 fn sample(catalogue: &Catalogue, kind: &str, folder: &Path) -> (Graph, NodeId) {
     let mut graph = Graph::new();
@@ -123,16 +241,22 @@ fn sample(catalogue: &Catalogue, kind: &str, folder: &Path) -> (Graph, NodeId) {
     let declared = catalogue.kind(kind).unwrap().clone();
     for input in declared.inputs() {
         match LiteralKind::of_wire(input.wire) {
-            None if !input.optional || kind.starts_with("join") => {
-                let name = constants(catalogue, input.wire, "good").first().unwrap().clone();
+            None if !input.optional || wanted(kind, &input.name) => {
+                let own = format!("for-{kind}-{}", input.name);
+                let name = match catalogue.kind(&own) {
+                    Some(_) => own,
+                    None => constants(catalogue, input.wire, "good").first().unwrap().clone(),
+                };
                 let source = graph.find(&name).unwrap_or_else(|| graph.add(catalogue, &name, &name).unwrap());
                 graph.connect(catalogue, source, "out", node, &input.name).unwrap();
             }
             Some(LiteralKind::Strokes) => graph.set(node, &input.name, strokes()).unwrap(),
             Some(LiteralKind::File) => {
-                let file = match input.extensions.iter().any(|e| e == "json") {
-                    true => ("curves.json", br#"{"contours":[{"name":"a","points":[[0,0,0],[0,1,0]]}]}"#.to_vec()),
-                    false => ("mesh.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_vec()),
+                let reads = |extension: &str| input.extensions.iter().any(|e| e == extension);
+                let file: (&str, &[u8]) = match (reads("json"), reads("obj")) {
+                    (true, _) => ("curves.json", br#"{"contours":[{"name":"a","points":[[0,0,0],[0,1,0]]}]}"#),
+                    (false, true) => ("mesh.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
+                    (false, false) => ("skeleton.gltf", SKELETON),
                 };
                 std::fs::write(folder.join(file.0), file.1).unwrap();
                 graph.set(node, &input.name, Literal::File(file.0.to_owned())).unwrap();
@@ -156,7 +280,9 @@ fn evaluate(catalogue: &Catalogue, graph: &Graph, node: NodeId, folder: &Path) -
 fn every_file_is_a_registered_kind_of_its_name() {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let mut files = BTreeSet::new();
-    for folder in std::fs::read_dir(source).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_dir()) {
+    let holds_kinds = |path: &Path| path.is_dir() && !path.ends_with("wire") && !path.ends_with("frozen");
+    for folder in std::fs::read_dir(source).unwrap().map(|entry| entry.unwrap().path()).filter(|path| holds_kinds(path))
+    {
         for file in std::fs::read_dir(folder).unwrap() {
             let stem = file.unwrap().path().file_stem().unwrap().to_string_lossy().replace('_', "-");
             if stem != "mod" {

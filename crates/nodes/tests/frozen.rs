@@ -10,6 +10,7 @@
 )]
 
 use std::collections::BTreeSet;
+use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
@@ -17,6 +18,8 @@ use maquette_geometry::curve::Curve;
 use maquette_geometry::mesh::Mesh;
 use maquette_geometry::scene::Material;
 use maquette_geometry::sections::Sections;
+use maquette_geometry::surface::analytic::{AnalyticSurface, SurfaceOptions};
+use maquette_geometry::trigonometric::{EllipticSection, EllipticSegment, PlaneFrame, Series};
 use maquette_graph::Value;
 use maquette_graph::freeze::{Freeze, Golden};
 use maquette_nodes::wire;
@@ -93,6 +96,30 @@ fn every_wire_type_comes_back_from_what_was_frozen() {
     comes_back(wire::Curves(vec![]));
     comes_back(wire::CurvesResult { curves: vec![plain], colour: [0.1, 0.2, 0.3, 1.0] });
     comes_back(wire::Sections(Sections::new(vec![points.clone(); 2], true, vec![0, 2]).unwrap()));
+    let stack = Sections::new(vec![points.clone(); 2], true, vec![1]).unwrap();
+    comes_back(wire::CrossSections::Points(wire::Sections(stack.clone())));
+    comes_back(wire::Surface::Points(std::sync::Arc::new(stack)));
+    let segment =
+        |from: f64, to: f64| EllipticSegment { from, to, local: true, series: Series::new(points.clone()).unwrap() };
+    let segments = vec![segment(0.5, 2.0), segment(2.0, 0.5 + TAU)];
+    let section = EllipticSection::new(PlaneFrame::new(DVec3::X, DVec3::ONE), true, segments).unwrap();
+    let fit = wire::SectionFit {
+        mean: 0.1,
+        maximum: 0.2,
+        diagonal: 3.0,
+        met: true,
+        worst: DVec3::Y,
+        worst_angle: -0.5,
+        worst_distance: 1.0 / 3.0,
+    };
+    let named = wire::NamedSection { name: "ä".to_owned(), section: section.clone(), fit: Some(fit) };
+    let series = wire::EllipticSections::new(vec![named.clone(), wire::NamedSection { fit: None, ..named }]);
+    comes_back(series.clone());
+    comes_back(wire::CrossSections::Series(series));
+    let moved = section.transformed(&glam::DAffine3::from_translation(DVec3::Y)).unwrap();
+    let surface = AnalyticSurface::through(&[section, moved], &SurfaceOptions::default()).unwrap();
+    comes_back(wire::Surface::Series(vec![surface.clone(), surface]));
+    comes_back(wire::Surface::Series(vec![]));
     let bare = Mesh::new(points.clone(), [[0_u32, 1, 2]]).unwrap();
     let full = bare.clone().with_normals(vec![DVec3::Y; 3]).unwrap().with_uvs(vec![DVec2::X; 3]).unwrap().named("a");
     for mesh in [bare, full, Mesh::default()] {

@@ -1,9 +1,13 @@
 //! A failure names the input at which the remedy lies.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test that panics fails")]
 
+use std::f64::consts::TAU;
+
 use glam::DVec3;
 use maquette_geometry::curve::Curve;
 use maquette_geometry::sections::Sections;
+use maquette_geometry::surface::analytic::{AnalyticSurface, SurfaceOptions};
+use maquette_geometry::trigonometric::{EllipticSection, EllipticSegment, PlaneFrame, Series};
 use maquette_graph::{Catalogue, Evaluator, Graph, Literal, NodeKind, OutcomeState, Report, Request, Wire};
 use maquette_nodes::wire;
 
@@ -37,6 +41,24 @@ fn rails(order: [usize; 4]) -> wire::Curves {
 fn sections(rows: i32, closed: bool) -> wire::Sections {
     let row = |k: i32| ring("", 1.0, f64::from(k) / 10.0).points().to_vec();
     wire::Sections(Sections::new((0..rows).map(row).collect(), closed, vec![]).unwrap())
+}
+
+/// Series: circles at these heights.
+fn series(heights: &[f64]) -> wire::EllipticSections {
+    let circle = |height: &f64| {
+        let series = Series::new(vec![DVec3::Y * *height, DVec3::X * (1.0 + height), DVec3::NEG_Z * (1.0 + height)]);
+        let segment = EllipticSegment { from: 0.0, to: TAU, local: false, series: series.unwrap() };
+        let frame = PlaneFrame::new(DVec3::Y * *height, DVec3::Y);
+        let section = EllipticSection::new(frame, true, vec![segment]).unwrap();
+        wire::NamedSection { name: format!("at {height}"), section, fit: None }
+    };
+    wire::EllipticSections::new(heights.iter().map(circle).collect())
+}
+
+/// A surface through circles at these heights.
+fn cone(heights: &[f64]) -> wire::Surface {
+    let sections = series(heights).sections();
+    wire::Surface::Series(vec![AnalyticSurface::through(&sections, &SurfaceOptions::default()).unwrap()])
 }
 
 /// Links and settings of one node.
@@ -101,7 +123,7 @@ fn detail_generator() {
     let run = |rails: wire::Curves, closed: Option<Vec<Curve>>, settings: Vec<(&'static str, Literal)>| Wiring {
         kind: "detail-generator",
         links: std::iter::once(("rails", constant("drawn", rails)))
-            .chain(closed.map(|closed| ("closed", constant("loops", wire::Curves(closed)))))
+            .chain(closed.map(|closed| ("profiles", constant("loops", wire::Curves(closed)))))
             .collect(),
         settings,
     };
@@ -109,12 +131,18 @@ fn detail_generator() {
     let rings = || vec![ring("bottom", 1.0, 0.0), ring("top", 1.0, 2.0)];
     run(rails([0, 2, 3, 1]), None, vec![]).blames("rails", "pass them through `sort`");
     run(ordered(), Some(rings()), vec![("sections", Literal::Integer(3))]).blames("sections", "at least 4");
-    run(ordered(), Some(rings().into_iter().map(Curve::reversed).collect()), vec![]).blames("closed", "reverse it");
-    run(ordered(), Some(rings()[..1].to_vec()), vec![]).blames("closed", "4 open and 1 closed");
-    run(ordered(), None, vec![("case", text("between-closed"))]).blames("closed", "connect both");
-    run(ordered(), Some(ordered().0[..2].to_vec()), vec![]).blames("closed", "is open");
+    run(ordered(), Some(rings().into_iter().map(Curve::reversed).collect()), vec![]).blames("profiles", "reverse it");
+    run(ordered(), Some(rings()[..1].to_vec()), vec![]).blames("rails", "the point where the rails meet");
+    run(ordered(), Some(vec![ring("bottom", 1.0, 0.0), ordered().0[0].clone()]), vec![])
+        .blames("profiles", "all open or all closed");
+    let lone = wire::Curves(ordered().0[..1].to_vec());
+    run(lone, Some(rings()), vec![]).blames("profiles", "draw at least 2 rails");
+    run(ordered(), None, vec![("case", text("between-closed"))]).blames("profiles", "at least 2 needed");
+    run(wire::Curves::default(), Some(rings()), vec![]).blames("rails", "`blend` node");
+    let forced = vec![("case", text("between-closed"))];
+    run(ordered(), Some(ordered().0[..2].to_vec()), forced).blames("profiles", "is open");
     let far = rings().into_iter().map(|ring| ring.map(|p| p * 1e101).unwrap()).collect();
-    run(ordered(), Some(far), vec![]).blames("closed", "scale it down");
+    run(ordered(), Some(far), vec![]).blames("profiles", "scale it down");
     assert!(run(ordered(), Some(rings()), vec![]).run().unwrap().warnings.is_empty());
 }
 
@@ -136,6 +164,18 @@ fn surface_from_cross_sections() {
         links: vec![("sections", constant("stack", stack))],
         settings,
     };
+    run(sections(4, true), vec![("cap-start", text("rounded"))]).blames("cap-start", "put a `fit-sections` node");
+    run(sections(4, true), vec![("blend", text("polynomial"))]).blames("blend", "take the spline");
+    run(sections(4, true), vec![("end", text("natural"))]).blames("end", "set it to free");
+    let beside = Wiring {
+        kind: "surface-from-cross-sections",
+        links: vec![
+            ("sections", constant("stack", sections(4, true))),
+            ("after", constant("beside", cone(&[2.0, 3.0]))),
+        ],
+        settings: vec![],
+    };
+    beside.blames("after", "disconnect it");
     run(sections(4, false), vec![("cap-start", text("flat"))]).blames("cap-start", "section 0 is an open curve");
     run(sections(4, false), vec![("cap-end", text("flat"))]).blames("cap-end", "section 3 is an open curve");
     let most = vec![("rows", Literal::Integer(64)), ("columns", Literal::Integer(64))];
@@ -143,4 +183,114 @@ fn surface_from_cross_sections() {
     let row = ring("", 1.0, 0.0).points().to_vec();
     let twins = wire::Sections(Sections::new(vec![row.clone(), row], true, vec![]).unwrap());
     run(twins, vec![]).blames("sections", "identical");
+}
+
+#[test]
+fn surface_through_series() {
+    let run = |heights: &[f64], beside: Option<(&'static str, wire::Surface)>, settings| Wiring {
+        kind: "surface-from-cross-sections",
+        links: std::iter::once(("sections", constant("stack", series(heights))))
+            .chain(beside.map(|(input, surface)| (input, constant("beside", surface))))
+            .collect(),
+        settings,
+    };
+    run(&[0.0], None, vec![]).blames("sections", "at least 2");
+    run(&[0.0, 0.0], None, vec![]).blames("sections", "identical");
+    let many: Vec<f64> = (0..21).map(f64::from).collect();
+    run(&many, None, vec![("blend", text("polynomial"))]).blames("blend", "use the spline");
+    run(&[0.0, 1.0], Some(("before", cone(&[-0.5, -0.1]))), vec![]).blames("before", "the start of the surface");
+    run(&[0.0, 1.0], Some(("after", cone(&[1.5, 2.0]))), vec![]).blames("after", "the end of the surface");
+    run(&[0.0, 1.0], Some(("after", wire::Surface::Series(vec![]))), vec![]).blames("after", "no part");
+    let points = wire::Surface::Points(std::sync::Arc::new(sections(4, true).0));
+    run(&[0.0, 1.0], Some(("before", points)), vec![]).blames("before", "put a `fit-sections` node before it");
+    let report = run(&[0.0, 1.0, 1.5], Some(("before", cone(&[-0.5, 0.0]))), vec![]).run().unwrap();
+    assert_eq!(report.notes, ["blended by the polynomial through 3 sections"]);
+    assert_eq!(report.figure("constants").unwrap().value, 9.0 * 4.0, "three sections and the slope at the joint");
+    assert!(report.warnings.is_empty());
+    // The second circle lies in the first one's plane and crosses nothing; run back, the surface meets itself.
+    let spoilt = run(&[0.0, 1.0], None, vec![("cap-end", text("rounded"))]).run().unwrap();
+    assert!(spoilt.figure("faces").unwrap().value > 128.0);
+}
+
+#[test]
+fn fit_sections() {
+    let run = |curves: Vec<Curve>, settings: Vec<(&'static str, Literal)>| Wiring {
+        kind: "fit-sections",
+        links: vec![("curves", constant("drawn", wire::Curves(curves)))],
+        settings,
+    };
+    let integer = Literal::Integer;
+    let ringed = || vec![ring("low", 1.0, 0.0), ring("high", 1.2, 1.0)];
+    run(vec![], vec![]).blames("curves", "at least one");
+    run([ringed(), rails([0, 1, 2, 3]).0].concat(), vec![]).blames("curves", "is open");
+    run(rails([0, 1, 2, 3]).0, vec![("angles", text("polar"))]).blames("angles", "take arc length");
+    let as_given = ("sampling", text("as-given"));
+    run(ringed(), vec![("harmonics", integer(40)), as_given.clone()]).blames("harmonics", "lower the harmonics to 23");
+    let given = |joints: &str| vec![("split", text("given")), ("joints", Literal::Text(joints.to_owned()))];
+    run(ringed(), given("10, 370")).blames("joints", "both at the angle");
+    run(rails([0, 1, 2, 3]).0, given("200")).blames("joints", "an open section is split inside");
+    run(ringed(), [given("0, 10"), vec![as_given]].concat()).blames("joints", "move the joints apart");
+    run(ringed(), [given("0, 90"), vec![("harmonics", integer(1))]].concat())
+        .blames("harmonics", "raise the harmonics");
+    run(ringed(), [given("0, 90"), vec![("most-harmonics", integer(1))]].concat()).blames("most-harmonics", "raise");
+    let eight = (0..96).map(|k| f64::from(k) * TAU / 96.0).map(|t| DVec3::new(t.sin(), 0.0, (2.0 * t).sin())).collect();
+    let warned = run(vec![Curve::new("eight", eight, true).unwrap()], vec![("most-harmonics", integer(1))]).run();
+    let warnings = warned.unwrap().warnings;
+    assert!(
+        warnings[0].contains("\"eight\" crosses itself") && warnings[1].contains("with 1 harmonics"),
+        "{warnings:?}"
+    );
+}
+
+#[test]
+fn join_surfaces() {
+    let run = |surfaces: Vec<(&'static str, wire::Surface)>, settings| Wiring {
+        kind: "join-surfaces",
+        links: surfaces
+            .into_iter()
+            .map(|(input, surface)| (input, constant(&format!("to {input}"), surface)))
+            .collect(),
+        settings,
+    };
+    let [low, middle, high] = [[0.0, 0.5, 1.0], [1.0, 1.5, 2.0], [2.0, 2.4, 3.0]].map(|heights| cone(&heights));
+    run(vec![], vec![]).blames("a", "connect at least one");
+    run(vec![("a", low.clone()), ("b", cone(&[3.0, 2.0, 1.0]))], vec![]).blames("b", "\"a\" and \"b\" both end");
+    run(vec![("a", low.clone()), ("c", high.clone())], vec![]).blames("c", "nothing begins where \"a\" ends");
+    run(vec![("a", middle.clone()), ("c", high.clone()), ("d", high.clone())], vec![])
+        .blames("d", "\"c\" and \"d\" both follow \"a\"");
+    let points = wire::Surface::Points(std::sync::Arc::new(sections(4, true).0));
+    run(vec![("a", low.clone()), ("b", points)], vec![]).blames("b", "put a `fit-sections` node before it");
+    let report = run(vec![("b", high), ("c", low), ("h", middle)], vec![]).run().unwrap();
+    assert_eq!(report.notes[0], "the chain runs through \"c\", \"h\", \"b\"");
+    assert_eq!(["parts", "sections"].map(|name| report.figure(name).unwrap().value), [3.0, 7.0]);
+}
+
+#[test]
+fn tessellate() {
+    let run = |surface: wire::Surface, settings: Vec<(&'static str, Literal)>| Wiring {
+        kind: "tessellate",
+        links: vec![("surface", constant("made", surface))],
+        settings,
+    };
+    let surface = || cone(&[0.0, 1.0, 1.5]);
+    let (integer, number) = (Literal::Integer, Literal::Number);
+    run(wire::Surface::Series(vec![]), vec![]).blames("surface", "no surface given");
+    let parts = |low: &[f64], high: &[f64]| {
+        wire::Surface::Series([low, high].iter().flat_map(|h| cone(h).series().unwrap().to_vec()).collect())
+    };
+    run(parts(&[0.0, 1.0], &[1.1, 2.0]), vec![]).blames("surface", "surface 1 does not begin where surface 0 ends");
+    let most = vec![("rows", integer(65_536)), ("columns", integer(65_536))];
+    run(surface(), most).blames("rows", "more than 50000000");
+    let fine = vec![("by", text("deviation")), ("deviation", number(1e-9))];
+    run(surface(), fine).blames("deviation", "more than 50000000");
+    run(surface(), vec![("sections", integer(1))]).blames("sections", "there can be 2 to 3");
+    let coarse = vec![("by", text("deviation")), ("sections", integer(2)), ("deviation", number(1e-6))];
+    assert!(
+        run(surface(), coarse).run().is_ok_and(|report| report.figure("deviation").unwrap().value <= 1e-6),
+        "a cone needs two"
+    );
+    let report = run(surface(), vec![("measure", Literal::Boolean(false))]).run().unwrap();
+    assert!(report.figure("deviation").is_none() && report.figure("faces").unwrap().value == 2048.0);
+    let report = run(parts(&[0.0, 1.0], &[1.0, 2.0]), vec![]).run().unwrap();
+    assert!(report.figure("deviation").unwrap().value > 1e-4);
 }

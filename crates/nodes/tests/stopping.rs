@@ -52,6 +52,13 @@ fn net(side: u32) -> Mesh {
     Mesh::new(points.collect(), quads).unwrap()
 }
 
+/// An open tube of three walls around (1, 0, 1), 2 m high.
+fn pillar() -> Mesh {
+    let row = |y: f64| [(0.0, 0.0), (1.0, 3.0), (3.0, 0.0)].map(|(x, z)| DVec3::new(x, y, z));
+    let quads = (0..3_u32).map(|k| [k, (k + 1) % 3, 3 + (k + 1) % 3, 3 + k]);
+    Mesh::new([row(-1.0), row(1.0)].concat(), quads).unwrap()
+}
+
 fn obj(mesh: &Mesh) -> Vec<u8> {
     let vertices = mesh.positions().iter().map(|p| format!("v {} {} {}\n", p.x, p.y, p.z));
     let faces = mesh.polygons().map(|p| format!("f {} {} {} {}\n", p[0] + 1, p[1] + 1, p[2] + 1, p[3] + 1));
@@ -114,7 +121,13 @@ fn nodes_on_shapes() {
             .set("before", Literal::Number(0.5))
             .set("after", Literal::Number(0.5))
     });
-    stops(&catalogue, "surface-from-cross-sections", 200, |h| h.give("sections", stack.clone()));
+    let rings = wire::Curves((0..100).map(|k| ring("", 100, 1.0, 0.02 * (k * 37 % 100) as f64)).collect());
+    stops(&catalogue, "order-sections", 300, |h| h.give("curves", rings.clone()));
+    stops(&catalogue, "primitive-shape", 2, |h| h.set("sections", Literal::Integer(100)));
+    stops(&catalogue, "superellipsoid", 1, |h| h.set("sections", Literal::Integer(100)));
+    stops(&catalogue, "ellipse", 1, |h| h.set("points", Literal::Integer(1000)));
+    let points = wire::CrossSections::Points(stack.clone());
+    stops(&catalogue, "surface-from-cross-sections", 200, |h| h.give("sections", points.clone()));
     stops(&catalogue, "curves-from-sections", 100, |h| h.give("sections", stack.clone()));
 }
 
@@ -128,5 +141,46 @@ fn nodes_on_meshes() {
     stops(&catalogue, "transform-mesh", 4, |h| h.give("mesh", mesh.clone()));
     stops(&catalogue, "mirror-mesh", 8, |h| h.give("mesh", mesh.clone()).set("keep", Literal::Boolean(true)));
     stops(&catalogue, "join-meshes", 4, |h| h.give("a", mesh.clone()).give("b", mesh.clone()));
+    stops(&catalogue, "caps", 5, |h| h.give("mesh", mesh.clone()));
+    stops(&catalogue, "join-parts", 8, |h| h.give("a", mesh.clone()).give("b", mesh.clone()));
+    let bone = Curve::new("bone", vec![DVec3::new(1.0, -0.9, 1.0), DVec3::new(1.0, 0.9, 1.0)], false).unwrap();
+    let pillar = wire::Mesh::new(pillar());
+    stops(&catalogue, "sections-from-mesh", 100, |h| {
+        h.give("mesh", pillar.clone()).give("bone", wire::Curve(bone.clone())).set("count", Literal::Integer(100))
+    });
     stops(&catalogue, "mesh-out", 3 * 400 * 400 / 65_536 + 8, |h| h.give("mesh", mesh.clone()).examine());
+}
+
+fn fitted(count: usize) -> wire::EllipticSections {
+    let catalogue = maquette_nodes::catalogue().unwrap();
+    let stack = (0..count).map(|k| ring(&format!("ring {k}"), 64, 1.0 + 0.1 * (k as f64).sin(), 0.1 * k as f64));
+    let fit = Harness::new(catalogue.kind("fit-sections").unwrap()).give("curves", wire::Curves(stack.collect()));
+    fit.run().unwrap().value::<wire::EllipticSections>("sections").unwrap().clone()
+}
+
+#[test]
+fn nodes_on_series() {
+    let catalogue = maquette_nodes::catalogue().unwrap();
+    let stack: Vec<Curve> = (0..40).map(|k| ring(&format!("ring {k}"), 64, 1.0, 0.1 * f64::from(k))).collect();
+    stops(&catalogue, "fit-sections", 3 * 40, |h| h.give("curves", wire::Curves(stack.clone())));
+    let choice = |name: &str| Literal::Choice(name.to_owned());
+    // The search for joints asks before each section of each try.
+    let square = [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)].map(|(x, z)| DVec3::new(x, 0.0, z)).to_vec();
+    let square = wire::Curves(vec![Curve::new("square", square, true).unwrap()]);
+    stops(&catalogue, "fit-sections", 5, |h| {
+        h.give("curves", square.clone())
+            .set("split", choice("automatic"))
+            .set("largest-distance", Literal::Number(0.01))
+    });
+    // One question for each half million comparisons of sides.
+    let fine = wire::Curves(vec![ring("fine", 10_000, 1.0, 0.0)]);
+    stops(&catalogue, "fit-sections", 50_000_000 >> 19, |h| {
+        h.give("curves", fine.clone()).set("sampling", choice("as-given")).set("angles", choice("arc-length"))
+    });
+    let series = wire::CrossSections::Series(fitted(40));
+    stops(&catalogue, "surface-from-cross-sections", 80, |h| h.give("sections", series.clone()));
+    let surface = Harness::new(catalogue.kind("surface-from-cross-sections").unwrap()).give("sections", series.clone());
+    let surface = surface.run().unwrap().value::<wire::Surface>("surface").unwrap().clone();
+    stops(&catalogue, "tessellate", 40, |h| h.give("surface", surface.clone()).set("rows", Literal::Integer(200)));
+    stops(&catalogue, "join-surfaces", 3, |h| h.give("a", surface.clone()));
 }

@@ -13,7 +13,7 @@ mod spread;
 pub use arc_length::ArcLength;
 pub use closest::{Closest, closest};
 pub use correspondence::{AxisSource, Decision, SortError, SortOptions, Sorted, sort, sort_while};
-pub(crate) use correspondence::{metres, place};
+pub(crate) use correspondence::{Started, metres, place, start_nearest};
 pub use polyline::{Curve, CurveError};
 pub use resample::{Amount, MAX_POINTS, ResampleError, Resampling, resample, resample_while};
 pub(crate) use smoothing::{Ends, NotSolvable, smoothed};

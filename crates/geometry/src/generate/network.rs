@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::neighbour::Neighbour;
 use super::sweep::{Drawing, sweep};
 use super::{GenerateError, GenerateOptions, Generated};
-use crate::curve::{Curve, closest};
+use crate::curve::{ArcLength, Curve, closest};
 
 /// A patch that fills three or four open border curves (paper 5.2.4), with any number of rails across.
 ///
@@ -124,7 +124,13 @@ fn apart(borders: &[Curve], border: usize, distance: f64, snap: f64) -> Generate
     GenerateError::BordersApart { border, name: borders[border].name().to_owned(), distance, snap }
 }
 
+/// Largest share of the shortest border's length by which borders may miss one another and still be taken for a loop,
+/// where nobody said that they are one: with a large snap any four curves would be.
+const LARGEST: f64 = 0.05;
+
 /// Whether open curves close a loop of a patch.
 pub(super) fn is_loop(curves: &[Curve], snap: f64) -> bool {
-    (3..=4).contains(&curves.len()) && curves.iter().all(|curve| !curve.is_closed()) && loop_of(curves, snap).is_ok()
+    let shortest = curves.iter().map(|curve| ArcLength::of(curve).length()).fold(f64::INFINITY, f64::min);
+    let open = curves.iter().all(|curve| !curve.is_closed());
+    (3..=4).contains(&curves.len()) && open && loop_of(curves, snap.min(LARGEST * shortest)).is_ok()
 }

@@ -1,17 +1,21 @@
 //! Polygon meshes and what can be measured on them.
 
+pub mod caps;
 pub mod check;
 pub mod crease;
+pub mod cut;
 pub mod distance;
 pub(crate) mod ear_clipping;
 pub mod measure;
 mod polygon;
 pub mod ray;
 pub mod slice;
+pub mod stroke;
 pub mod topology;
 pub mod transform;
 mod triangle_tree;
 pub mod triangulate;
+pub mod weld;
 
 pub use check::{MeshCheck, check, check_while};
 pub use distance::{MeshDistance, Nearest};

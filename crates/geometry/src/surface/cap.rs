@@ -18,28 +18,13 @@ pub(crate) struct NoArea;
 pub(crate) fn flat(parts: &mut MeshParts, rim: &[u32]) -> Result<(), NoArea> {
     let points: Vec<DVec3> = rim.iter().map(|v| parts.positions[*v as usize]).collect();
     let count = points.len();
-    let area = vector_area(points.iter().copied());
-    let perimeter: f64 = (0..count).map(|i| points[i].distance(points[(i + 1) % count])).sum();
-    if area.length() <= 1e-12 * perimeter * perimeter {
-        return Err(NoArea);
-    }
-    let normal = area.normalize();
-    let flat = project(points.iter().copied(), normal);
-    let (low, high) = flat.iter().fold((flat[0], flat[0]), |(low, high), p| (low.min(*p), high.max(*p)));
-    let scale = 1.0 / (high - low).max_element();
-    let uv = |p: DVec2| (p - low) * scale;
-    let rim_uv: Vec<DVec2> = flat.iter().map(|p| uv(*p)).collect();
-
-    let Some(weights) = fan_weights(&flat) else {
+    let Lid { normal, flat, rim_uv, centre } = Lid::of(&points)?;
+    let Some((centroid, centre_uv)) = centre else {
         for triangle in ear_clip(&flat) {
             parts.polygon(triangle.map(|k| (rim[k], normal, rim_uv[k])));
         }
         return Ok(());
     };
-    let mean = points.iter().copied().sum::<DVec3>() / count as f64;
-    let centroid: DVec3 = (0..count).map(|i| weights[i] * (mean + points[i] + points[(i + 1) % count]) / 3.0).sum();
-    // In the projection's own terms, for which the first point is the origin.
-    let centre_uv = uv(project([points[0], centroid], normal)[1]);
 
     // About as many rings as keep the quads from growing long.
     let rings = (count / 12).clamp(1, 8);
@@ -62,6 +47,43 @@ pub(crate) fn flat(parts: &mut MeshParts, rim: &[u32]) -> Result<(), NoArea> {
         parts.polygon([outer[i], outer[(i + 1) % count], (centre, centre_uv)].map(|(v, uv)| (v, normal, uv)));
     }
     Ok(())
+}
+
+/// What is measured of a loop to close it.
+pub(crate) struct Lid {
+    /// Unit normal about which it runs counter-clockwise.
+    pub(crate) normal: DVec3,
+    /// Its points in the plane across the normal, the first one the origin.
+    pub(crate) flat: Vec<DVec2>,
+    /// The same, the box around them moved to 0 and its longer side scaled to 1.
+    pub(crate) rim_uv: Vec<DVec2>,
+    /// The centroid of the area and its UV; none where the loop is not star-shaped about it.
+    pub(crate) centre: Option<(DVec3, DVec2)>,
+}
+
+impl Lid {
+    pub(crate) fn of(points: &[DVec3]) -> Result<Self, NoArea> {
+        let count = points.len();
+        let area = vector_area(points.iter().copied());
+        let perimeter: f64 = (0..count).map(|i| points[i].distance(points[(i + 1) % count])).sum();
+        let normal = area.normalize_or_zero();
+        if area.length() <= 1e-12 * perimeter * perimeter || normal == DVec3::ZERO {
+            return Err(NoArea);
+        }
+        let flat = project(points.iter().copied(), normal);
+        let (low, high) = flat.iter().fold((flat[0], flat[0]), |(low, high), p| (low.min(*p), high.max(*p)));
+        let scale = 1.0 / (high - low).max_element();
+        let uv = |p: DVec2| (p - low) * scale;
+        let centre = fan_weights(&flat).map(|weights| {
+            let mean = points.iter().copied().sum::<DVec3>() / count as f64;
+            let centroid: DVec3 =
+                (0..count).map(|i| weights[i] * (mean + points[i] + points[(i + 1) % count]) / 3.0).sum();
+            // In the projection's own terms, for which the first point is the origin.
+            (centroid, uv(project([points[0], centroid], normal)[1]))
+        });
+        let rim_uv = flat.iter().map(|p| uv(*p)).collect();
+        Ok(Self { normal, flat, rim_uv, centre })
+    }
 }
 
 /// Shares of the area of the fan about the mean point, one a side; `None` where the loop is not star-shaped about its

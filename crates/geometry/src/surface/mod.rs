@@ -2,6 +2,7 @@
 
 pub mod analytic;
 mod cap;
+pub mod continuity;
 pub mod fairness;
 mod grid;
 mod knots;
@@ -14,7 +15,9 @@ pub mod tessellate;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use cap::{Lid, NoArea, flat as flat_cap};
 pub use fairness::{Ripple, ripple};
 pub use knots::UParameter;
+pub(crate) use parts::MeshParts;
 pub use pole::PoleShape;
 pub use skin::{Cap, SkinError, SkinOptions, skin};

@@ -156,6 +156,9 @@ pub enum FitError {
     /// Segments that make no section; a mistake of this module if it ever occurs.
     #[error(transparent)]
     Section(#[from] SectionError),
+    /// The progress function said to stop.
+    #[error("stopped")]
+    Stopped,
 }
 
 /// What is odd about a curve that was fitted.

@@ -39,13 +39,25 @@ pub fn fit(curve: &Curve, options: &FitOptions) -> Result<Fitted, FitError> {
 /// [`FitError`] where options are out of range, the curves are of two kinds or too small or large, angles or joints do
 /// not fit the curves, or harmonics do not fit the samples.
 pub fn fit_sections(curves: &[Curve], options: &FitOptions) -> Result<FittedStack, FitError> {
+    fit_sections_while(curves, options, &|_| true)
+}
+
+/// The same, asking `progress` with the fraction done whether to go on.
+///
+/// # Errors
+/// As [`fit_sections`], and [`FitError::Stopped`] where `progress` answers `false`.
+pub fn fit_sections_while(
+    curves: &[Curve],
+    options: &FitOptions,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<FittedStack, FitError> {
     check(options)?;
     let Some(first) = curves.first() else { return Err(FitError::NoCurves) };
     let closed = first.is_closed();
     if let Some(other) = curves.iter().find(|curve| curve.is_closed() != closed) {
         return Err(FitError::Mixed { curve: other.name().to_owned(), closed: !closed });
     }
-    let (angles, stack) = prepared(curves, options)?;
+    let (angles, stack) = prepared(curves, options, progress)?;
     let method = Method { solution: options.solution, local_angles: options.local_angles };
     let (most, fixed) = match options.harmonics {
         Harmonics::Smallest { most } => (most, None),
@@ -62,6 +74,7 @@ pub fn fit_sections(curves: &[Curve], options: &FitOptions) -> Result<FittedStac
                 &stack,
                 closed,
                 Automatic { most, corner: *corner_angle, continuity: options.continuity, method },
+                &|| go_on(progress, 0.4),
             )?
         }
     };
@@ -69,16 +82,24 @@ pub fn fit_sections(curves: &[Curve], options: &FitOptions) -> Result<FittedStac
         Some(harmonics) => Goal::Given(vec![harmonics; joints.angles.len() + 1]),
         None => Goal::Smallest { most },
     };
-    let outcomes = solve_stack(&stack, &joints, closed, &goal, method, options.common_harmonics)?;
+    let outcomes = solve_stack(&stack, &joints, closed, &goal, method, options.common_harmonics, progress)?;
     let sections = stack
         .iter()
         .zip(outcomes)
-        .map(|(prepared, outcome)| finished(prepared, outcome, closed, angles, options))
+        .enumerate()
+        .map(|(i, (prepared, outcome))| {
+            let done = 0.9 + 0.1 * i as f64 / stack.len() as f64;
+            finished(prepared, outcome, closed, angles, options, &|| go_on(progress, done))
+        })
         .collect::<Result<_, _>>()?;
     Ok(FittedStack { sections, angles, joints: joints.common() })
 }
 
-fn check(options: &FitOptions) -> Result<(), FitError> {
+fn go_on(progress: &dyn Fn(f64) -> bool, done: f64) -> Result<(), FitError> {
+    if progress(done) { Ok(()) } else { Err(FitError::Stopped) }
+}
+
+pub(super) fn check(options: &FitOptions) -> Result<(), FitError> {
     let mut counts = vec![match options.harmonics {
         Harmonics::Smallest { most } => most,
         Harmonics::Fixed(harmonics) => harmonics,
@@ -106,14 +127,22 @@ fn check(options: &FitOptions) -> Result<(), FitError> {
 }
 
 /// Samples, frames and angles of all curves, and the kind of angles.
-fn prepared(curves: &[Curve], options: &FitOptions) -> Result<(Angles, Vec<Prepared>), FitError> {
+pub(super) fn prepared(
+    curves: &[Curve],
+    options: &FitOptions,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<(Angles, Vec<Prepared>), FitError> {
     let split = options.split != Split::None;
     let fixed = match options.harmonics {
         Harmonics::Fixed(harmonics) => Some(harmonics),
         Harmonics::Smallest { .. } => None,
     };
     let wanted = Wanted { sampling: options.sampling, split, fixed };
-    let mut stack = curves.iter().map(|curve| Samples::of(curve, wanted)).collect::<Result<Vec<_>, _>>()?;
+    let sampled = |(i, curve): (usize, &Curve)| {
+        go_on(progress, 0.3 * i as f64 / curves.len() as f64)?;
+        Samples::of(curve, wanted)
+    };
+    let mut stack = curves.iter().enumerate().map(sampled).collect::<Result<Vec<_>, _>>()?;
     align(&mut stack, options.about);
     let kind = kind_of_angles(&stack, options.angles)?;
     let first_angle = stack[0].frame.angle(stack[0].points[0]);
@@ -191,10 +220,14 @@ fn solve_stack(
     goal: &Goal,
     method: Method,
     common: bool,
+    progress: &dyn Fn(f64) -> bool,
 ) -> Result<Vec<Outcome>, FitError> {
     let layouts: Vec<_> = (0..stack.len()).map(|i| joints.layout(i, closed)).collect();
     let segments = layouts[0].count();
-    let solve_one = |i: usize, goal: &Goal, local| solve(&stack[i], &layouts[i], goal, method, local);
+    let solve_one = |i: usize, goal: &Goal, local| {
+        go_on(progress, 0.4 + 0.5 * i as f64 / stack.len() as f64)?;
+        solve(&stack[i], &layouts[i], goal, method, local)
+    };
     let goal = match goal {
         Goal::Given(harmonics) => Goal::Given(harmonics[..segments].to_vec()),
         Goal::Smallest { .. } => goal.clone(),
@@ -219,13 +252,15 @@ fn solve_stack(
 }
 
 /// The section in its place, and its report.
-fn finished(
+pub(super) fn finished(
     prepared: &Prepared,
     outcome: Outcome,
     closed: bool,
     kind: Angles,
     options: &FitOptions,
+    go_on: &dyn Fn() -> Result<(), FitError>,
 ) -> Result<Fitted, FitError> {
+    go_on()?;
     let Prepared { samples, angles, .. } = prepared;
     let Outcome { solved, harmonics, met } = outcome;
     let curve = || samples.name.clone();
@@ -243,7 +278,7 @@ fn finished(
     // A curve with polar angles goes around its centre once and can't cross itself.
     if closed
         && kind != Angles::Polar
-        && let Some(at) = crossing(&samples.points, &samples.frame)
+        && let Some(at) = crossing(&samples.points, &samples.frame, go_on)?
     {
         warnings.push(FitWarning::Crossing { curve: curve(), at });
     }

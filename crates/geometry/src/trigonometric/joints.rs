@@ -128,10 +128,20 @@ pub(super) struct Automatic {
 
 /// Joints for a stack of which some section does not meet its tolerances in one series: at corners, then one more at
 /// the worst point of all until every section meets them, or no more joints find room.
-pub(super) fn automatic(stack: &[Prepared], closed: bool, with: Automatic) -> Result<Joints, FitError> {
+///
+/// `go_on` is asked before each section is solved; its error ends the search.
+pub(super) fn automatic(
+    stack: &[Prepared],
+    closed: bool,
+    with: Automatic,
+    go_on: &dyn Fn() -> Result<(), FitError>,
+) -> Result<Joints, FitError> {
     let goal = Goal::Smallest { most: with.most };
     let solve_all = |joints: &Joints| -> Result<Vec<Outcome>, FitError> {
-        let solved = |(i, prepared)| solve(prepared, &joints.layout(i, closed), &goal, with.method, None);
+        let solved = |(i, prepared)| {
+            go_on()?;
+            solve(prepared, &joints.layout(i, closed), &goal, with.method, None)
+        };
         stack.iter().enumerate().map(solved).collect()
     };
     let mut joints = Joints { angles: Vec::new(), continuity: vec![Vec::new(); stack.len()] };
@@ -140,10 +150,13 @@ pub(super) fn automatic(stack: &[Prepared], closed: bool, with: Automatic) -> Re
         return Ok(Joints::default());
     }
     let corners = Joints::at_corners(stack, closed, with.corner, with.continuity);
-    if !corners.angles.is_empty()
-        && let Ok(solved) = solve_all(&corners)
-    {
-        (joints, outcomes) = (corners, solved);
+    if !corners.angles.is_empty() {
+        match solve_all(&corners) {
+            Ok(solved) => (joints, outcomes) = (corners, solved),
+            Err(FitError::Stopped) => return Err(FitError::Stopped),
+            // Corners too close to one another are no place to begin.
+            Err(_) => {}
+        }
     }
     while joints.angles.len() < MOST && !outcomes.iter().all(|outcome| outcome.met) {
         let angle = place(stack, &outcomes, closed);
@@ -152,7 +165,11 @@ pub(super) fn automatic(stack: &[Prepared], closed: bool, with: Automatic) -> Re
             next = next.with((angle + PI).rem_euclid(TAU), with.continuity);
         }
         // No room for another joint: what there is is the answer.
-        let Ok(solved) = solve_all(&next) else { break };
+        let solved = match solve_all(&next) {
+            Ok(solved) => solved,
+            Err(FitError::Stopped) => return Err(FitError::Stopped),
+            Err(_) => break,
+        };
         (joints, outcomes) = (next, solved);
     }
     Ok(if joints.angles.is_empty() { Joints::default() } else { joints })

@@ -14,16 +14,19 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod comparison;
 mod composite;
 mod crossing;
 mod error;
 mod fit;
+mod handles;
 mod joints;
 mod least_squares;
 mod measure;
 mod options;
 mod order_search;
 mod plane_frame;
+mod refit;
 mod report;
 mod samples;
 mod section;
@@ -32,12 +35,15 @@ mod solve;
 #[cfg(test)]
 mod tests;
 
+pub use comparison::Comparison;
 pub use error::{FitError, FitWarning};
-pub use fit::{fit, fit_sections};
+pub use fit::{fit, fit_sections, fit_sections_while};
+pub use handles::{HandlesError, MOST_HANDLES};
 pub use measure::NearestPoint;
 pub use options::{Angles, Continuity, FitOptions, Harmonics, Joint, LocalAngles, Sampling, Solution, Split, Start};
 pub use order_search::{Errors, Found, Tolerances, smallest_harmonics};
 pub use plane_frame::PlaneFrame;
+pub use refit::{RefitOptions, refit};
 pub use report::{FitReport, Fitted, FittedStack, WorstPoint};
 pub use section::{EllipticSection, EllipticSegment, SectionError};
 pub use series::{Series, SeriesError, basis, harmonics};

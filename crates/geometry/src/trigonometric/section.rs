@@ -112,6 +112,16 @@ impl EllipticSection {
         Ok(Self { frame, closed, segments })
     }
 
+    /// The ellipse about the frame's origin with these half axes along `e1` and `e2`, metres: exact with one harmonic,
+    /// `origin + e1 a cos v + e2 b sin v`. Two zeros give a point.
+    ///
+    /// # Errors
+    /// [`SeriesError::NotFinite`] where a number is not finite.
+    pub fn ellipse(frame: PlaneFrame, [a, b]: [f64; 2]) -> Result<Self, SeriesError> {
+        let series = Series::new(vec![frame.origin, frame.e1 * a, frame.e2 * b])?;
+        Ok(Self { frame, closed: true, segments: vec![EllipticSegment { from: 0.0, to: TAU, local: false, series }] })
+    }
+
     /// The plane it was fitted in: origin at the mean of the samples, `e1` at angle 0 of polar angles.
     pub fn frame(&self) -> &PlaneFrame {
         &self.frame
@@ -208,6 +218,13 @@ impl EllipticSection {
         Ok(Self { frame, closed: self.closed, segments })
     }
 
+    /// The same frame and ranges with other series, one a segment.
+    pub(super) fn with_series(&self, series: impl Iterator<Item = super::Series>) -> Self {
+        let segments =
+            self.segments.iter().zip(series).map(|(segment, series)| EllipticSegment { series, ..segment.clone() });
+        Self { frame: self.frame, closed: self.closed, segments: segments.collect() }
+    }
+
     /// The same curve with at least `harmonics[i]` harmonics in segment `i`; segments beyond the list stay as they are.
     #[must_use]
     pub fn padded(mut self, harmonics: &[usize]) -> Self {
@@ -232,9 +249,7 @@ mod tests {
     use glam::DQuat;
 
     pub(super) fn ellipse(a: f64, b: f64) -> EllipticSection {
-        let series = Series::new(vec![DVec3::ZERO, DVec3::X * a, DVec3::Y * b]).unwrap();
-        let segment = EllipticSegment { from: 0.0, to: TAU, local: false, series };
-        EllipticSection::new(PlaneFrame::new(DVec3::ZERO, DVec3::Z), true, vec![segment]).unwrap()
+        EllipticSection::ellipse(PlaneFrame::new(DVec3::ZERO, DVec3::Z), [a, b]).unwrap()
     }
 
     #[test]

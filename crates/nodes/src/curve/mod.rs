@@ -1,5 +1,7 @@
 //! Nodes that work on curves.
 
+pub(crate) mod boundary_of;
+pub(crate) mod draw_on_surface;
 pub(crate) mod join;
 pub(crate) mod mirror;
 pub(crate) mod pick;

@@ -1,27 +1,47 @@
 //! **Detail generator**: a shape grown through sketched curves by the beam ODE.
-//! Reference: thesis 6.1 and 6.3; paper 5.2.
+//! Reference: thesis 6.1 to 6.3; paper 5.2.
 
 use maquette_geometry::generate::{
-    Case, Frame, GenerateError, GenerateOptions, Generated, LocalDetail, ViewPlacement, Weights, between_closed,
-    two_views,
+    ArchBorder, Detail, Frame, GenerateError, GenerateOptions, Generated, LocalDetail, Method, Neighbour,
+    ViewPlacement, Weights, arch,
 };
 use maquette_graph::{AtPort, Choices, NodeError, NodeKind, Unit};
 
+use crate::neighbours::beside;
 use crate::stiffness::StiffnessInputs;
 use crate::wire;
 
+/// The method; none is by what is connected.
 #[derive(Clone, Copy, PartialEq)]
-enum CaseChoice {
-    Auto,
-    TwoViews,
-    BetweenClosed,
-}
+struct CaseChoice(Option<Method>);
 
 impl Choices for CaseChoice {
     const OPTIONS: &'static [(Self, &'static str, &'static str)] = &[
-        (Self::Auto, "auto", "by what is connected"),
-        (Self::TwoViews, "two-views", "four open contours from two views, joined in a point or not"),
-        (Self::BetweenClosed, "between-closed", "rails between two closed curves"),
+        (Self(None), "auto", "by what is connected"),
+        (Self(Some(Method::TwoViews)), "two-views", "four open contours from two views, joined in a point or not"),
+        (Self(Some(Method::ThroughClosed)), "between-closed", "rails between two closed profiles, or past several"),
+        (
+            Self(Some(Method::ToApex)),
+            "to-point",
+            "rails from a closed profile to a point, or two contours that cross there",
+        ),
+        (Self(Some(Method::Arch)), "cap", "one open contour over a closed profile"),
+        (Self(Some(Method::Sheet)), "sheet", "rails past two or more open profiles: a thin sheet"),
+        (Self(Some(Method::Network)), "patch", "a patch in a loop of three or four borders, with curves inside it"),
+    ];
+}
+
+/// How a cap leaves its profile where it continues nothing.
+#[derive(Clone, Copy)]
+enum CapChoice {
+    Parabola,
+    Round,
+}
+
+impl Choices for CapChoice {
+    const OPTIONS: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::Parabola, "parabola", "as in the thesis"),
+        (Self::Round, "round", "along circles: half a sphere comes out round"),
     ];
 }
 
@@ -58,13 +78,26 @@ impl Choices for PlacementChoice {
 pub(crate) fn kind() -> NodeKind {
     let mut node = NodeKind::declare(
         "detail-generator",
-        1,
+        2,
         "generate",
-        "Grows sections through sketched curves: four contours of two views, or rails between two closed curves.",
+        "Grows sections through sketched curves: contours of two views, rails along or to a point past closed or open \
+         profiles, a contour over a closed one, a patch in a loop of borders. Continues its neighbours smoothly.",
     );
-    node.reference("thesis 6.1 (Figures 6.1-6.3) and 6.3 (Figures 6.8, 6.9), appendices B-D; paper 5.2");
-    let rails = node.input::<wire::Curves>("rails", "Open curves in order around, as `sort` gives them.");
-    let closed = node.optional::<wire::Curves>("closed", "Two closed curves between which the rails run, if any.");
+    node.reference("thesis 6.1 (Figures 6.1-6.3), 6.2 (6.4, 6.5), 6.3 (6.6-6.10), appendices B-D; paper 5.2");
+    let rails = node.input::<wire::Curves>(
+        "rails",
+        "Open curves along the shape, in order around, as `sort` gives them; of a patch its borders, in any order.",
+    );
+    let profiles = node.optional::<wire::Curves>(
+        "profiles",
+        "Curves across the rails, all closed or all open, in the order in which the rails meet them; if any.",
+    );
+    node.input_formerly(profiles, "closed");
+    let inner = node.optional::<wire::Curves>("inner", "Patch: curves inside it, from one border to the opposite one.");
+    let neighbours = node.optional::<wire::Borders>(
+        "neighbours",
+        "Borders of surfaces to continue, as `boundary-of` gives them; each lies along a profile, or a border of the patch.",
+    );
     let case = node.choice::<CaseChoice>("case", "Which method; a choice forces it.");
     let sections = node.integer(
         "sections",
@@ -98,6 +131,8 @@ pub(crate) fn kind() -> NodeKind {
         "Two views: bends of a contour shorter than this count as fine; matters where detail-reach is below 1.",
     );
     node.soft_range(detail_wave, 0.01..=0.5);
+    let cap =
+        node.choice::<CapChoice>("cap", "One contour over a closed profile: how it rises where it continues nothing.");
     let snap = node.length("snap", 0.02, 0.0..=10.0, "How far a rail's end may be from where it should be.");
     node.soft_range(snap, 0.0..=0.1);
     let generated = node.output::<wire::Sections>("sections", "The sections; the rails run along them.");
@@ -113,7 +148,9 @@ pub(crate) fn kind() -> NodeKind {
     );
     node.evaluate(move |ports| {
         let drawn = &ports.read(rails).0;
-        let loops = ports.read_optional(closed).map(|curves| curves.0.as_slice()).unwrap_or_default();
+        let list =
+            |input| ports.read_optional(input).map(|curves: &wire::Curves| curves.0.as_slice()).unwrap_or_default();
+        let across = list(profiles);
         let options = GenerateOptions {
             stiffness: stiffness.read(ports)?,
             sections: ports.count(sections),
@@ -126,38 +163,36 @@ pub(crate) fn kind() -> NodeKind {
             snap: ports.value(snap),
         };
         let progress = ports.progress_callback();
-        let case = match ports.choice(case) {
-            CaseChoice::Auto => match Case::of(drawn.len(), loops.len()) {
-                Err(error) if !matches!(loops.len(), 0 | 2) => Err(error).at(closed)?,
-                case => case.at(rails)?,
+        let alone = Detail { rails: drawn, profiles: across, inner: list(inner), neighbours: &[] };
+        let method = match ports.choice(case).0 {
+            Some(method) => method,
+            // Two closed curves alone would be a blend, which has a node of its own.
+            None => match alone.method(options.snap) {
+                Ok(Method::Blend) => {
+                    return Err("two closed profiles without rails: draw rails, or use a `blend` node").at(rails);
+                }
+                Err(error) if !across.is_empty() => Err(error).at(profiles)?,
+                method => method.at(rails)?,
             },
-            CaseChoice::TwoViews => Case::TwoViews,
-            CaseChoice::BetweenClosed => Case::BetweenClosed,
         };
-        let made = match case {
-            Case::TwoViews => {
-                let four: &[_; 4] = drawn
-                    .as_slice()
-                    .try_into()
-                    .map_err(|_| {
-                        format!(
-                            "two views take four open contours, and {} arrive: pass them through `sort`",
-                            drawn.len()
-                        )
-                    })
-                    .at(rails)?;
-                two_views(four, &options, &progress)
+        let borders = ports.read_optional(neighbours).map(|borders| borders.0.as_slice()).unwrap_or_default();
+        let edges: Vec<_> = match method {
+            Method::Network => drawn.iter().collect(),
+            Method::TwoViews => Vec::new(),
+            Method::ToApex | Method::Arch => across.first().into_iter().collect(),
+            Method::ThroughClosed | Method::Sheet | Method::Blend => {
+                across.first().into_iter().chain(across.last()).collect()
             }
-            Case::BetweenClosed => {
-                let [start, end] = loops else {
-                    return Err(format!(
-                        "rails run between two closed curves, and {} arrive: connect both to \"closed\"",
-                        loops.len()
-                    ))
-                    .at(closed);
-                };
-                between_closed(drawn, start, end, &options, &progress)
+        };
+        let directions = beside(borders, &edges, options.snap).at(neighbours)?;
+        let beyond: Vec<Option<Neighbour<'_>>> =
+            directions.iter().map(|found| found.as_deref().map(Neighbour::Directions)).collect();
+        let detail = Detail { neighbours: &beyond, ..alone };
+        let made = match (method, drawn.as_slice(), across, ports.choice(cap)) {
+            (Method::Arch, [open], [closed], CapChoice::Round) if borders.is_empty() => {
+                arch(open, closed, ArchBorder::Round, &options, &progress)
             }
+            _ => detail.generate(method, &options, &progress),
         };
         use GenerateError as E;
         let made = match made {
@@ -168,9 +203,17 @@ pub(crate) fn kind() -> NodeKind {
             }
             Err(error @ E::Beam(_)) => Err(error).at(nodes),
             Err(error @ E::Snap { .. }) => Err(error).at(snap),
-            Err(error @ (E::CurveIsOpen { .. } | E::CurveIsReversed { .. })) => Err(error).at(closed),
+            Err(
+                error @ (E::CurveIsOpen { .. }
+                | E::CurveIsClosed { .. }
+                | E::CurveIsReversed { .. }
+                | E::TooFewProfiles { .. }
+                | E::EnclosesNothing { .. }),
+            ) => Err(error).at(profiles),
+            Err(error @ (E::NoDirection { .. } | E::DirectionCount { .. })) => Err(error).at(neighbours),
+            Err(error @ E::TooFewNodes { .. }) => Err(error).at(nodes),
             Err(E::TooFarOut { name }) if drawn.iter().all(|rail| rail.name() != name) => {
-                Err(E::TooFarOut { name }).at(closed)
+                Err(E::TooFarOut { name }).at(profiles)
             }
             made => made.at(rails),
         };

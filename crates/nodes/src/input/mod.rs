@@ -2,4 +2,5 @@
 
 pub(crate) mod import_curves;
 pub(crate) mod import_mesh;
+pub(crate) mod import_skeleton;
 pub(crate) mod sketch;

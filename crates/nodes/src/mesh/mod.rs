@@ -3,7 +3,11 @@
 use maquette_geometry::mesh::TransformError;
 use maquette_graph::NodeError;
 
+pub(crate) mod caps;
+pub(crate) mod cut_with_curve;
+pub(crate) mod cut_with_plane;
 pub(crate) mod join_meshes;
+pub(crate) mod join_parts;
 pub(crate) mod mirror_mesh;
 pub(crate) mod transform_mesh;
 

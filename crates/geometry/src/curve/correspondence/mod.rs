@@ -20,6 +20,7 @@ pub use axis::AxisSource;
 pub use error::SortError;
 pub use explain::Decision;
 pub(crate) use explain::{metres, place};
+pub(crate) use ring::{Started, start_nearest};
 
 use super::Curve;
 use axis::{Axis, Station};

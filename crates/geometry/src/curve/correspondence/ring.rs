@@ -13,14 +13,14 @@ pub(super) fn counter_clockwise(curve: Curve, direction: DVec3) -> (Curve, bool)
 }
 
 /// A closed curve with a new first point.
-pub(super) struct Started {
-    pub(super) curve: Curve,
+pub(crate) struct Started {
+    pub(crate) curve: Curve,
     /// How far the first point moved along the curve, the shorter way, metres.
-    pub(super) moved: f64,
+    pub(crate) moved: f64,
 }
 
 /// Starts a closed curve at its point closest to `target`, which becomes one of its points.
-pub(super) fn start_nearest(curve: &Curve, target: DVec3) -> Started {
+pub(crate) fn start_nearest(curve: &Curve, target: DVec3) -> Started {
     let length = ArcLength::of(curve).length();
     let Closest { point, arc_length, segment, .. } = closest(curve, target);
     let moved = arc_length.min(length - arc_length).max(0.0);

@@ -106,10 +106,31 @@ impl Skeleton {
             });
             chain.extend(between.or_else(|| self.chain(pair[0], pair[1])).unwrap_or_else(|| pair.to_vec()));
         }
-        let name = |joint: usize| self.joints[joint].name.as_str();
-        let name = format!("{} - {}", name(first), name(wanted[wanted.len() - 1]));
-        let points = chain.into_iter().map(|joint| self.joints[joint].position).collect();
-        Ok(Curve::new(name, points, false)?)
+        Ok(self.curve(&chain)?)
+    }
+
+    /// The bones from fork to fork: of each joint that is the first, or that has sisters, the run of joints below it as
+    /// long as there is one child each, called as by [`Skeleton::bone`]. A joint that forks at once, or has no child,
+    /// is no bone, nor are joints in one place.
+    pub fn chains(&self) -> Vec<Curve> {
+        let mut children: Vec<Vec<usize>> = vec![Vec::new(); self.joints.len()];
+        for (joint, parent) in self.joints.iter().enumerate().filter_map(|(k, joint)| Some((k, joint.parent?))) {
+            children[parent].push(joint);
+        }
+        let only_child = |joint: &usize| match *children[*joint] {
+            [child] => Some(child),
+            _ => None,
+        };
+        let begins = |joint: &usize| self.joints[*joint].parent.is_none_or(|parent| children[parent].len() > 1);
+        let run = |first: usize| std::iter::successors(Some(first), only_child).collect::<Vec<usize>>();
+        (0..self.joints.len()).filter(begins).filter_map(|first| self.curve(&run(first)).ok()).collect()
+    }
+
+    /// The curve through joints.
+    fn curve(&self, chain: &[usize]) -> Result<Curve, CurveError> {
+        let name = |joint: Option<&usize>| joint.map_or("", |joint| self.joints[*joint].name.as_str());
+        let name = format!("{} - {}", name(chain.first()), name(chain.last()));
+        Curve::new(name, chain.iter().map(|joint| self.joints[*joint].position).collect(), false)
     }
 
     /// The joints from one up to another that is above it.
@@ -285,6 +306,21 @@ mod tests {
         assert_eq!(skeleton.bone(&["hip"]).unwrap().points(), &leg.points()[..2]);
         let up = skeleton.bone(&["node 4", "hip"]).unwrap();
         assert_eq!(up.points(), leg.reversed().points());
+    }
+
+    #[test]
+    fn chains_run_from_fork_to_fork() {
+        let names = |document: &Value| -> Vec<(String, usize)> {
+            let chains = open(document).unwrap().chains();
+            chains.iter().map(|chain| (chain.name().to_owned(), chain.points().len())).collect()
+        };
+        assert_eq!(names(&leg()), [("hip - node 4".to_owned(), 3)], "toes end at once");
+        let mut document = leg();
+        document["nodes"][5]["children"] = json!([7]);
+        document["nodes"].as_array_mut().unwrap().push(json!({"name": "tip", "translation": [0, 0, 0.1]}));
+        document["skins"][0]["joints"] = json!([1, 3, 4, 5, 6, 7]);
+        document["skins"][0].as_object_mut().unwrap().remove("inverseBindMatrices");
+        assert_eq!(names(&document), [("hip - node 4".to_owned(), 3), ("toe - tip".to_owned(), 2)]);
     }
 
     #[test]

@@ -21,5 +21,8 @@ pub use chain::Loop;
 pub use cut::plane;
 pub use error::SliceError;
 pub use plane::{NoPlane, Plane};
+pub(crate) use section::{centroid, front_of};
+pub(crate) use stations::with_fronts;
+
 pub use section::{Hit, Method, Others, Section, SectionOptions, Sliced};
 pub use warning::{Concern, SliceWarning};

@@ -54,23 +54,23 @@ impl Plane {
 
 /// A plane with two axes in it, so that what lies in it has two coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Frame {
-    pub(super) plane: Plane,
+pub(crate) struct Frame {
+    pub(crate) plane: Plane,
     /// Unit vector in the plane: where sections begin.
-    pub(super) front: DVec3,
+    pub(crate) front: DVec3,
     /// The other axis, a quarter turn counter-clockwise from the front.
-    pub(super) side: DVec3,
+    pub(crate) side: DVec3,
 }
 
 impl Frame {
     /// The frame whose first axis is `hint` as far as it lies in the plane; any direction where it does not.
-    pub(super) fn new(plane: Plane, hint: DVec3) -> Self {
+    pub(crate) fn new(plane: Plane, hint: DVec3) -> Self {
         let front = (hint - plane.normal * hint.dot(plane.normal)).normalize_or(plane.normal.any_orthonormal_vector());
         Self { plane, front, side: plane.normal.cross(front) }
     }
 
     /// Coordinates in the plane of the foot of a point, seen from the plane's origin.
-    pub(super) fn flat(&self, point: DVec3) -> DVec2 {
+    pub(crate) fn flat(&self, point: DVec3) -> DVec2 {
         let arm = point - self.plane.origin();
         DVec2::new(arm.dot(self.front), arm.dot(self.side))
     }

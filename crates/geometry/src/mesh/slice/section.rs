@@ -144,7 +144,7 @@ fn measured(index: usize, frame: &Frame, curve: Curve, flat: &[DVec2], others: O
 }
 
 /// Centroid of the area that a polygon encloses, or of its corners where there is next to none.
-fn centroid(flat: &[DVec2]) -> DVec2 {
+pub(crate) fn centroid(flat: &[DVec2]) -> DVec2 {
     let mean = flat.iter().sum::<DVec2>() / flat.len() as f64;
     let sides = || flat.iter().zip(flat.iter().cycle().skip(1)).map(|(a, b)| (*a - mean, *b - mean));
     let (doubled, spread) = sides().fold((0.0, 0.0), |(doubled, spread): (f64, f64), (a, b)| {
@@ -156,7 +156,7 @@ fn centroid(flat: &[DVec2]) -> DVec2 {
 
 /// The side of a polygon on which the front lies, and the share of it that is before: the outermost crossing of the ray
 /// from the centre along the first axis.
-fn front_of(flat: &[DVec2], centre: DVec2) -> (usize, f64) {
+pub(crate) fn front_of(flat: &[DVec2], centre: DVec2) -> (usize, f64) {
     let mut outermost: Option<(f64, usize, f64)> = None;
     let mut foremost = 0;
     for (k, from) in flat.iter().enumerate() {

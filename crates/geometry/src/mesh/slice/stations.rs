@@ -55,7 +55,7 @@ pub(super) fn along_bone(bone: &Curve, fractions: &[f64], turning: f64, front: D
 ///
 /// Where the hint is the normal of that plane to within 26 degrees, the model's top (+Y) takes its place, then its left
 /// (+X).
-pub(super) fn with_fronts(planes: &[Plane], hint: DVec3, between: impl Fn(usize, usize) -> Vec<DVec3>) -> Vec<Frame> {
+pub(crate) fn with_fronts(planes: &[Plane], hint: DVec3, between: impl Fn(usize, usize) -> Vec<DVec3>) -> Vec<Frame> {
     let hint = (hint / hint.abs().max_element()).normalize_or_zero();
     let across = |plane: &Plane, hint: DVec3| plane.normal().cross(hint).length();
     let best = |hint: DVec3| {

@@ -133,3 +133,123 @@ fn in_its_part(joints: &[usize], error: SurfaceError) -> SurfaceError {
     };
     SurfaceError::Part { part, error: Box::new(error) }
 }
+
+/// Why parts have no order in which they make a chain.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ChainOrderError {
+    /// No part at all.
+    #[error("no part given")]
+    NoParts,
+    /// A part without a surface.
+    #[error("part {part} has {found} section(s), and a surface needs at least 2")]
+    TooFewSections {
+        /// Index of the part, counted from 0.
+        part: usize,
+        /// Its sections.
+        found: usize,
+    },
+    /// Two parts that run towards each other or away from each other.
+    #[error(
+        "parts {first} and {second} both {} in the same section: run the sections of one of them the other way", side.verb()
+    )]
+    Opposed {
+        /// Index of a part, counted from 0.
+        first: usize,
+        /// Index of the other.
+        second: usize,
+        /// Where both are the same.
+        side: Side,
+    },
+    /// A section in which several parts begin, or several end.
+    #[error("parts {first} and {second} both follow part {part}: a chain goes on in one of them, leave the other out")]
+    Forked {
+        /// Index of the part that both follow, counted from 0.
+        part: usize,
+        /// Index of one that follows.
+        first: usize,
+        /// Index of the other.
+        second: usize,
+    },
+    /// Parts that go round in a ring.
+    #[error("the parts follow one another in a ring: a chain has a first and a last part, leave one out")]
+    Ring,
+    /// Parts that do not meet.
+    #[error(
+        "part {first} ends and part {second} begins without sharing a section with another: give them one section in \
+         common, fitted with the same options"
+    )]
+    Apart {
+        /// Index of a part that nothing follows, counted from 0.
+        first: usize,
+        /// Index of a part that follows nothing.
+        second: usize,
+    },
+}
+
+impl Side {
+    fn verb(self) -> &'static str {
+        match self {
+            Self::Start => "begin",
+            Self::End => "end",
+        }
+    }
+}
+
+/// The order in which parts make a chain: each begins with the section in which the one before ends, as [`chain`] wants
+/// them.
+///
+/// # Errors
+/// [`ChainOrderError`] where there is none.
+pub fn chain_order(parts: &[Vec<EllipticSection>]) -> Result<Vec<usize>, ChainOrderError> {
+    let mut ends = Vec::with_capacity(parts.len());
+    for (part, sections) in parts.iter().enumerate() {
+        match sections.as_slice() {
+            [first, .., last] => ends.push((first, last)),
+            few => return Err(ChainOrderError::TooFewSections { part, found: few.len() }),
+        }
+    }
+    let same = |a: &EllipticSection, b: &EllipticSection| shared(0, a, b).is_ok();
+    let count = ends.len();
+    let (mut next, mut before) = (vec![None; count], vec![None; count]);
+    for first in 0..count {
+        for second in (0..count).filter(|second| *second != first) {
+            if !same(ends[first].1, ends[second].0) {
+                continue;
+            }
+            if let Some(other) = next[first].replace(second) {
+                return Err(ChainOrderError::Forked { part: first, first: other, second });
+            }
+            if before[second].replace(first).is_some_and(|other| other != first) {
+                let other = (0..first).find(|other| next[*other] == Some(second)).unwrap_or(first);
+                return Err(ChainOrderError::Opposed { first: other, second: first, side: Side::End });
+            }
+        }
+    }
+    let starts: Vec<usize> = (0..count).filter(|part| before[*part].is_none()).collect();
+    let Some(mut part) = starts.first().copied() else {
+        return Err(if count == 0 { ChainOrderError::NoParts } else { ChainOrderError::Ring });
+    };
+    let mut order = vec![part];
+    while let Some(follower) = next[part] {
+        order.push(follower);
+        part = follower;
+    }
+    if order.len() == count {
+        return Ok(order);
+    }
+    for first in 0..count {
+        for second in first + 1..count {
+            for (side, a, b) in
+                [(Side::Start, ends[first].0, ends[second].0), (Side::End, ends[first].1, ends[second].1)]
+            {
+                if same(a, b) {
+                    return Err(ChainOrderError::Opposed { first, second, side });
+                }
+            }
+        }
+    }
+    match starts.get(1) {
+        Some(second) => Err(ChainOrderError::Apart { first: part, second: *second }),
+        None => Err(ChainOrderError::Ring),
+    }
+}

@@ -9,6 +9,7 @@ mod differential;
 mod ends;
 mod error;
 mod fewer;
+mod numbers;
 mod options;
 mod solve;
 mod surface;
@@ -20,8 +21,9 @@ pub(crate) use ends::{EndCurves, largest_distance, size};
 pub(crate) use surface::mean;
 
 pub use blend::{Blend, MOST_FOR_POLYNOMIAL, MOST_OF_POLYNOMIAL};
-pub use chain::chain;
+pub use chain::{ChainOrderError, chain, chain_order};
 pub use differential::SurfacePoint;
 pub use error::{Side, SurfaceError, SurfaceWarning};
+pub use numbers::NoSurface;
 pub use options::{Continuity, EndCondition, SurfaceOptions};
 pub use surface::AnalyticSurface;

@@ -251,27 +251,6 @@ impl AnalyticSurface {
             + size_of::<Inner>()
     }
 
-    /// All numbers that determine the surface, in a fixed order: equal surfaces have equal numbers, and others differ in
-    /// some. For content hashes.
-    pub fn numbers(&self) -> impl Iterator<Item = f64> {
-        let inner = &*self.0;
-        let of_piece = |piece: &Piece| {
-            [piece.from, piece.to, if piece.local { 1.0 } else { 0.0 }, piece.harmonics as f64]
-        };
-        let kind = match inner.along {
-            Along::Polynomial { rows } => [0.0, rows as f64],
-            Along::Spline { .. } => [1.0, inner.rows.len() as f64],
-        };
-        let closed = [if inner.angles.closed { 1.0 } else { 0.0 }, inner.angles.pieces.len() as f64];
-        closed
-            .into_iter()
-            .chain(inner.angles.pieces.iter().flat_map(of_piece))
-            .chain(kind)
-            .chain(std::iter::once(inner.knots.len() as f64))
-            .chain(inner.knots.iter().copied())
-            .chain(inner.rows.iter().chain(&inner.sections).flat_map(DVec3::to_array))
-    }
-
     /// What is doubtful about the sections.
     pub fn warnings(&self) -> &[SurfaceWarning] {
         &self.0.warnings
@@ -288,6 +267,19 @@ impl AnalyticSurface {
 
     pub(crate) fn along(&self) -> &Along {
         &self.0.along
+    }
+
+    /// What the surface was solved from.
+    pub(crate) fn plan(&self) -> Plan {
+        let inner = &*self.0;
+        Plan {
+            angles: inner.angles.clone(),
+            sections: inner.sections.clone(),
+            knots: inner.knots.clone(),
+            ends: inner.ends.clone(),
+            polynomial: matches!(inner.along, Along::Polynomial { .. }),
+            warnings: inner.warnings.clone(),
+        }
     }
 
     pub(crate) fn section_rows(&self) -> &[DVec3] {

@@ -391,10 +391,11 @@ fn half_the_numbers_are_nearly_the_same_surface() {
         .map(|u| surface.evaluate(u, 2.0).position.distance(sparse.evaluate(u, 2.0).position));
     let apart = apart.fold(0.0, f64::max);
     assert!(apart > 1e-4 && apart < 0.05, "{apart}");
-    assert!(surface.numbers().eq(AnalyticSurface::through(&stack(12), &SurfaceOptions::default()).unwrap().numbers()));
+    let again = AnalyticSurface::through(&stack(12), &SurfaceOptions::default()).unwrap();
+    assert_eq!(surface.numbers(), again.numbers());
     let natural = SurfaceOptions { start: EndCondition::Natural, ..SurfaceOptions::default() };
     let natural = AnalyticSurface::through(&stack(12), &natural).unwrap();
-    assert!(!surface.numbers().eq(natural.numbers()) && !surface.numbers().eq(fewer.numbers()));
+    assert!(surface.numbers() != natural.numbers() && surface.numbers() != fewer.numbers());
     assert_eq!(surface.with_harmonics(2).unwrap(), surface);
     assert_eq!(surface.with_sections(12).unwrap(), surface);
     assert_eq!(surface.with_sections(1).unwrap_err().to_string(), "1 sections asked for, and there can be 2 to 12");
@@ -402,6 +403,37 @@ fn half_the_numbers_are_nearly_the_same_surface() {
     let patches: Vec<EllipticSection> = (0..4).map(|i| composite(&[0.4, 2.1], i)).collect();
     let patches = AnalyticSurface::through(&patches, &SurfaceOptions::default()).unwrap();
     assert_eq!(patches.with_harmonics(1), Err(SurfaceError::SeveralPieces));
+}
+
+#[test]
+fn the_order_of_a_chain_is_found() {
+    let all = stack(12);
+    let parts = [all[7..].to_vec(), all[..4].to_vec(), all[3..8].to_vec()];
+    assert_eq!(chain_order(&parts), Ok(vec![1, 2, 0]));
+    assert!(
+        chain(&[parts[1].clone(), parts[2].clone(), parts[0].clone()], &SurfaceOptions::default(), Continuity::Tangent)
+            .is_ok()
+    );
+    assert_eq!(chain_order(&parts[..1]), Ok(vec![0]));
+    assert_eq!(chain_order(&[]), Err(ChainOrderError::NoParts));
+    let backwards: Vec<EllipticSection> = parts[0].iter().rev().cloned().collect();
+    let opposed = ChainOrderError::Opposed { first: 0, second: 1, side: Side::End };
+    assert_eq!(chain_order(&[parts[2].clone(), backwards.clone()]), Err(opposed.clone()));
+    assert!(opposed.to_string().starts_with("parts 0 and 1 both end in the same section"), "{opposed}");
+    let opposed = ChainOrderError::Opposed { first: 0, second: 1, side: Side::Start };
+    assert_eq!(chain_order(&[parts[0].clone(), all[7..9].to_vec()]), Err(opposed));
+    let forked = ChainOrderError::Forked { part: 0, first: 1, second: 2 };
+    assert_eq!(chain_order(&[parts[2].clone(), parts[0].clone(), all[7..9].to_vec()]), Err(forked));
+    assert_eq!(chain_order(&parts[..2]), Err(ChainOrderError::Apart { first: 0, second: 1 }));
+    assert_eq!(
+        chain_order(&[all[..2].to_vec(), all[..1].to_vec()]),
+        Err(ChainOrderError::TooFewSections { part: 1, found: 1 })
+    );
+    let ring = [all[..4].to_vec(), [&all[3..6], &all[..1]].concat()];
+    assert_eq!(chain_order(&ring), Err(ChainOrderError::Ring));
+    // Two that end in one section, before a third.
+    let merging = [parts[1].clone(), all[2..4].to_vec(), parts[2].clone()];
+    assert_eq!(chain_order(&merging), Err(ChainOrderError::Opposed { first: 0, second: 1, side: Side::End }));
 }
 
 #[test]

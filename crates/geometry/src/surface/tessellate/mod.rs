@@ -35,6 +35,14 @@ pub enum Density {
         /// Columns of quads along v; at least 3 where the surface is closed.
         columns: usize,
     },
+    /// So many rows of quads from each section to the next, with rows of vertices at the sections, and columns as with
+    /// [`Density::Grid`]. Rounded caps come besides, with a row for every eight columns.
+    Sections {
+        /// Rows of quads between neighbouring sections, at least 1.
+        rows: usize,
+        /// Columns of quads along v.
+        columns: usize,
+    },
     /// About so many quads in all, shared between rows and columns for the least deviation; flat caps not counted.
     Quads(usize),
     /// As few as keep the surface within this distance of the mesh, metres, as [`Deviation`] measures it.
@@ -257,6 +265,15 @@ fn lattice(
             }
             Ok((make(rows, columns)?, None))
         }
+        Density::Sections { rows, columns } => {
+            if rows == 0 || columns == 0 {
+                return Err(TessellationError::NoQuads);
+            }
+            let gaps: usize = patches.iter().map(|patch| patch.section_parameters().len() - 1).sum();
+            let lattice = make(gaps.saturating_mul(rows).saturating_add(columns / 4), columns)?;
+            let between = patches.iter().map(|patch| between_sections(patch, rows, columns)).collect();
+            Ok((Lattice { rows: between, ..lattice }, None))
+        }
         Density::Quads(quads) => {
             if quads == 0 {
                 return Err(TessellationError::NoQuads);
@@ -307,6 +324,18 @@ fn lattice(
             Ok((lattice, Some(deviation)))
         }
     }
+}
+
+/// Places of rows with so many steps between neighbouring sections; those of a dome, from a section to a pole, finer.
+fn between_sections(patch: &AnalyticSurface, rows: usize, columns: usize) -> Vec<f64> {
+    let knots = patch.section_parameters();
+    let dome = knots.len() == 2 && (patch.is_pole(0) || patch.is_pole(1));
+    let rows = if dome { rows.max(columns / 8) } else { rows };
+    let step = |pair: &[f64]| {
+        let (from, to) = (pair[0], pair[1]);
+        (0..rows).map(move |row| from + (to - from) * row as f64 / rows as f64).collect::<Vec<_>>()
+    };
+    knots.windows(2).flat_map(step).chain(knots.last().copied()).collect()
 }
 
 /// The mesh of a lattice, its flat caps with it.

@@ -100,6 +100,26 @@ fn grids_are_the_points_one_by_one() {
 }
 
 #[test]
+fn rows_may_stand_at_the_sections() {
+    let limb = surface(&limb(5));
+    let density = Density::Sections { rows: 3, columns: 16 };
+    let made = limb.tessellate(&Tessellation { density, ..Tessellation::default() }).unwrap();
+    assert_eq!((made.rows, made.columns, made.deviation), (12, 16, None));
+    for (k, u) in limb.section_parameters().iter().enumerate() {
+        let vertices = &made.mesh.positions()[3 * k * 16..][..16];
+        let nearest = |p: &DVec3| limb.section_at(*u).unwrap().nearest(*p).distance;
+        assert!(vertices.iter().all(|p| nearest(p) < 1e-12), "section {k}");
+    }
+    let domed = limb.tessellate(&closed(Density::Sections { rows: 3, columns: 32 }, Closing::Rounded)).unwrap();
+    assert_eq!(domed.rows, 12 + 2 * 4);
+    assert!(check(&domed.mesh).is_sound());
+    let too_many = closed(Density::Sections { rows: usize::MAX, columns: 9 }, Closing::Open);
+    assert!(matches!(limb.tessellate(&too_many), Err(TessellationError::TooManyVertices { .. })));
+    let none = closed(Density::Sections { rows: 0, columns: 9 }, Closing::Open);
+    assert_eq!(limb.tessellate(&none), Err(TessellationError::NoQuads));
+}
+
+#[test]
 fn uvs_run_from_seam_to_seam() {
     let made = surface(&limb(5)).tessellate(&grid(6, 9)).unwrap();
     let uvs = made.mesh.uvs().unwrap();

@@ -1,0 +1,175 @@
+//! Cutting a mesh open: what remains where a height above a cut is not negative.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, DVec3};
+
+use super::slice::Plane;
+use super::triangulate::polygon_triangles;
+use super::{Mesh, MeshError, measure};
+
+/// Share of the mesh's size below which a vertex lies in a cut.
+const IN_THE_CUT: f64 = 1e-9;
+
+/// The part of a mesh on the side of a plane to which its normal points; open where the plane cuts it.
+///
+/// Vertices within 1e-9 of the mesh's size of the plane are taken as in it. Polygons stay polygons; normals and UVs are
+/// carried along, linear on each side that is cut.
+///
+/// # Errors
+/// [`MeshError`] where the result has too many corners.
+pub fn cut_with_plane(mesh: &Mesh, plane: &Plane) -> Result<Mesh, MeshError> {
+    let heights: Vec<f64> = mesh.positions().iter().map(|p| plane.height(*p)).collect();
+    let share = |a: u32, b: u32| {
+        let (from, to) = (heights[a as usize], heights[b as usize]);
+        from / (from - to)
+    };
+    cut(mesh, &heights, &share)
+}
+
+/// The part of a mesh at whose vertices `heights` are not negative. `share` tells at which share of the way from the
+/// first vertex to the second (the lower index first) a side is cut whose ends are on both sides.
+pub(crate) fn cut(mesh: &Mesh, heights: &[f64], share: &dyn Fn(u32, u32) -> f64) -> Result<Mesh, MeshError> {
+    let most = IN_THE_CUT * measure::diagonal(mesh);
+    let heights: Vec<f64> = heights.iter().map(|h| if h.abs() <= most { 0.0 } else { *h }).collect();
+    let mut cutter = Cutter {
+        mesh,
+        heights: &heights,
+        share,
+        renumbered: vec![None; mesh.positions().len()],
+        crossings: BTreeMap::new(),
+        positions: Vec::new(),
+        corners: Vec::new(),
+        counts: Vec::new(),
+        normals: Vec::new(),
+        uvs: Vec::new(),
+    };
+    for polygon in 0..mesh.polygon_count() {
+        let range = mesh.corner_range(polygon);
+        let inside: Vec<bool> = range.clone().map(|c| heights[mesh.corners()[c] as usize] >= 0.0).collect();
+        let changes = (0..inside.len()).filter(|i| inside[*i] != inside[(*i + 1) % inside.len()]).count();
+        match changes {
+            0 if inside[0] => cutter.polygon(&range.collect::<Vec<_>>()),
+            0 => {}
+            2 => cutter.polygon(&range.collect::<Vec<_>>()),
+            _ => {
+                for triangle in polygon_triangles(mesh, polygon) {
+                    cutter.polygon(&triangle);
+                }
+            }
+        }
+    }
+    cutter.finish()
+}
+
+/// A corner of a new polygon: one of the mesh, or a place between two.
+#[derive(Clone, Copy)]
+enum Place {
+    Corner(usize),
+    Between { from: usize, to: usize, share: f64, vertex: u32 },
+}
+
+struct Cutter<'a> {
+    mesh: &'a Mesh,
+    heights: &'a [f64],
+    share: &'a dyn Fn(u32, u32) -> f64,
+    renumbered: Vec<Option<u32>>,
+    /// New vertices by the side they cut.
+    crossings: BTreeMap<[u32; 2], u32>,
+    positions: Vec<DVec3>,
+    corners: Vec<u32>,
+    counts: Vec<usize>,
+    normals: Vec<DVec3>,
+    uvs: Vec<DVec2>,
+}
+
+impl Cutter<'_> {
+    fn vertex(&self, corner: usize) -> u32 {
+        self.mesh.corners()[corner]
+    }
+
+    fn height(&self, corner: usize) -> f64 {
+        self.heights[self.vertex(corner) as usize]
+    }
+
+    /// Adds what remains of a polygon of these corners.
+    fn polygon(&mut self, corners: &[usize]) {
+        let mut places: Vec<(u32, Place)> = Vec::with_capacity(corners.len() + 1);
+        for (i, corner) in corners.iter().enumerate() {
+            let next = corners[(i + 1) % corners.len()];
+            if self.height(*corner) >= 0.0 {
+                places.push((self.kept(self.vertex(*corner)), Place::Corner(*corner)));
+            }
+            let (here, there) = (self.height(*corner), self.height(next));
+            // A vertex in the cut is the crossing itself.
+            if (here > 0.0 && there < 0.0) || (here < 0.0 && there > 0.0) {
+                let place = self.crossing(*corner, next);
+                if let Place::Between { vertex, .. } = place {
+                    places.push((vertex, place));
+                }
+            }
+        }
+        places.dedup_by_key(|(vertex, _)| *vertex);
+        if places.len() > 1 && places[0].0 == places[places.len() - 1].0 {
+            places.pop();
+        }
+        if places.len() < 3
+            || places.iter().all(|(_, place)| matches!(place, Place::Corner(c) if self.height(*c) == 0.0))
+                && corners.iter().any(|c| self.height(*c) < 0.0)
+        {
+            return;
+        }
+        for (vertex, place) in &places {
+            self.corners.push(*vertex);
+            if let Some(normals) = self.mesh.normals() {
+                self.normals.push(match place {
+                    Place::Corner(corner) => normals[*corner],
+                    Place::Between { from, to, share, .. } => {
+                        let between = normals[*from].lerp(normals[*to], *share);
+                        between.try_normalize().unwrap_or(normals[*from])
+                    }
+                });
+            }
+            if let Some(uvs) = self.mesh.uvs() {
+                self.uvs.push(match place {
+                    Place::Corner(corner) => uvs[*corner],
+                    Place::Between { from, to, share, .. } => uvs[*from].lerp(uvs[*to], *share),
+                });
+            }
+        }
+        self.counts.push(places.len());
+    }
+
+    fn kept(&mut self, vertex: u32) -> u32 {
+        let next = self.positions.len() as u32;
+        let number = *self.renumbered[vertex as usize].get_or_insert(next);
+        if number == next {
+            self.positions.push(self.mesh.positions()[vertex as usize]);
+        }
+        number
+    }
+
+    fn crossing(&mut self, from: usize, to: usize) -> Place {
+        let (a, b) = (self.vertex(from), self.vertex(to));
+        let edge = [a.min(b), a.max(b)];
+        let share = (self.share)(edge[0], edge[1]).clamp(0.0, 1.0);
+        let next = self.positions.len() as u32;
+        let vertex = *self.crossings.entry(edge).or_insert(next);
+        if vertex == next {
+            let [low, high] = edge.map(|v| self.mesh.positions()[v as usize]);
+            self.positions.push(low.lerp(high, share));
+        }
+        Place::Between { from, to, share: if a == edge[0] { share } else { 1.0 - share }, vertex }
+    }
+
+    fn finish(self) -> Result<Mesh, MeshError> {
+        let mut mesh = Mesh::from_corners(self.positions, self.corners, self.counts)?;
+        if self.mesh.normals().is_some() {
+            mesh = mesh.with_normals(self.normals)?;
+        }
+        if self.mesh.uvs().is_some() {
+            mesh = mesh.with_uvs(self.uvs)?;
+        }
+        Ok(mesh.named(self.mesh.name()))
+    }
+}
