@@ -202,7 +202,11 @@ pub enum FileCommand {
         /// Extensions that are offered, without the dot.
         extensions: Vec<String>,
     },
-    /// Writes a table as CSV.
+    /// Asks where to write the results.
+    ExportDialog,
+    /// Writes the results in the format of the file's ending.
+    ExportTo(PathBuf),
+    /// Writes a text, such as a table as CSV.
     Export {
         /// The file.
         path: PathBuf,

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 use egui::{RichText, Ui};
+use maquette_geometry::file_format::FileFormat;
 
 use crate::command::{FileCommand, FileTarget};
 use crate::recovery::Left;
@@ -17,6 +18,15 @@ pub(crate) enum Purpose {
     SaveAs,
     /// A file that the graph names.
     Name(FileTarget),
+    /// A file to write results into.
+    Export,
+}
+
+impl Purpose {
+    /// Whether a file is written.
+    fn writes(&self) -> bool {
+        matches!(self, Self::SaveAs | Self::Export)
+    }
 }
 
 /// A question that is open.
@@ -58,7 +68,7 @@ pub(crate) enum Answer {
 impl Asking {
     pub(crate) fn path(purpose: Purpose, place: PathBuf, extension: &str) -> Self {
         let text = match purpose {
-            Purpose::SaveAs => place.display().to_string(),
+            Purpose::SaveAs | Purpose::Export => place.display().to_string(),
             _ => format!("{}/", place.display()),
         };
         let extension = extension.to_owned();
@@ -115,6 +125,7 @@ impl PathQuestion {
             Purpose::Open => "Open a graph",
             Purpose::SaveAs => "Save as",
             Purpose::Name(_) => "Choose a file",
+            Purpose::Export => "Export the results as .glb, .gltf, .obj, .ply or .json",
         });
         let field = ui.add(egui::TextEdit::singleline(&mut self.text).desired_width(f32::INFINITY));
         field.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "path"));
@@ -130,7 +141,7 @@ impl PathQuestion {
         if let Some(problem) = &problem {
             ui.label(RichText::new(problem).color(ui.visuals().warn_fg_color));
         }
-        let replaces = self.purpose == Purpose::SaveAs && path.is_file();
+        let replaces = self.purpose.writes() && path.is_file();
         if replaces {
             ui.checkbox(&mut self.sure, format!("replace {}", path.display()));
         }
@@ -138,7 +149,7 @@ impl PathQuestion {
         ui.add_space(8.0);
         ui.horizontal(|ui| {
             let ready = problem.is_none() && (!replaces || self.sure);
-            let word = if self.purpose == Purpose::SaveAs { "Save" } else { "Open" };
+            let word = if self.purpose.writes() { "Save" } else { "Open" };
             if ui.add_enabled(ready, egui::Button::new(word)).clicked() || (entered && ready) {
                 return Some(Answer::Path(self.purpose.clone(), path));
             }
@@ -159,8 +170,13 @@ impl PathQuestion {
     fn problem(&self, path: &Path) -> Option<String> {
         let folder = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
         match self.purpose {
-            Purpose::SaveAs if path.is_dir() || path.file_name().is_none() => Some("give it a name".to_owned()),
-            Purpose::SaveAs if !folder.is_dir() => Some(format!("there is no folder {}", folder.display())),
+            Purpose::SaveAs | Purpose::Export if path.is_dir() || path.file_name().is_none() => {
+                Some("give it a name".to_owned())
+            }
+            Purpose::SaveAs | Purpose::Export if !folder.is_dir() => {
+                Some(format!("there is no folder {}", folder.display()))
+            }
+            Purpose::Export => FileFormat::from_path(&path.to_string_lossy()).err().map(|error| error.to_string()),
             Purpose::SaveAs => None,
             _ if path.is_file() => None,
             _ if path.is_dir() => Some("choose a file in this folder".to_owned()),
@@ -179,7 +195,7 @@ impl PathQuestion {
         if !self.extension.is_empty() {
             dialog = dialog.add_filter(&self.extension, &[&self.extension]);
         }
-        let saves = self.purpose == Purpose::SaveAs;
+        let saves = self.purpose.writes();
         let context = context.clone();
         let thread = std::thread::Builder::new().name("file dialog".to_owned()).spawn(move || {
             let chosen = if saves { dialog.save_file() } else { dialog.pick_file() };

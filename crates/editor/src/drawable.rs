@@ -10,6 +10,7 @@ use maquette_geometry::curve::Curve;
 use maquette_geometry::mesh::crease::{CREASE_DEGREES, creased_normals};
 use maquette_geometry::mesh::{Mesh, triangles};
 use maquette_geometry::scene::Material;
+use maquette_geometry::surface::tessellate::{Tessellation, tessellate};
 use maquette_graph::{Evaluation, NodeId, Value};
 use maquette_nodes::wire;
 
@@ -129,8 +130,52 @@ fn drawable(value: &Value, curvature: bool) -> Option<Drawable> {
         Some(of_curves(&curves.0, None))
     } else if let Some(result) = value.get::<wire::CurvesResult>() {
         Some(of_curves(&result.curves, Some(result.colour)))
+    } else if let Some(sections) = value.get::<wire::Sections>() {
+        Some(of_sections(&sections.0))
+    } else if let Some(sections) = value.get::<wire::EllipticSections>() {
+        Some(of_series(sections))
+    } else if let Some(sections) = value.get::<wire::CrossSections>() {
+        Some(match sections {
+            wire::CrossSections::Points(sections) => of_sections(&sections.0),
+            wire::CrossSections::Series(sections) => of_series(sections),
+        })
+    } else if let Some(surface) = value.get::<wire::Surface>() {
+        of_surface(surface, curvature)
     } else {
-        value.get::<wire::Sections>().map(|sections| of_sections(&sections.0))
+        let borders = value.get::<wire::Borders>()?;
+        let curves: Vec<Curve> = borders.0.iter().map(|border| border.curve().clone()).collect();
+        Some(of_curves(&curves, None))
+    }
+}
+
+/// Sections that are series, as lines through this many of their points.
+const SERIES_POINTS: usize = 96;
+
+fn of_series(sections: &wire::EllipticSections) -> Drawable {
+    let sampled: Vec<(Vec<DVec3>, bool)> =
+        sections.0.iter().map(|named| (named.section.sampled(SERIES_POINTS), named.section.is_closed())).collect();
+    let line = |(points, closed): &(Vec<DVec3>, bool)| Line {
+        points: points.iter().map(|p| p.as_vec3()).collect(),
+        closed: *closed,
+        role: LineRole::Section,
+    };
+    Drawable {
+        id: fresh_id(),
+        surface: None,
+        lines: sampled.iter().map(line).collect(),
+        colour: None,
+        bounds: bounds(sampled.iter().flat_map(|(points, _)| points).copied()),
+    }
+}
+
+/// A surface as a mesh of moderate density. One that is known at its sections only is shown by these.
+fn of_surface(surface: &wire::Surface, curvature: bool) -> Option<Drawable> {
+    match surface {
+        wire::Surface::Points(sections) => Some(of_sections(sections)),
+        wire::Surface::Series(parts) => {
+            let made = tessellate(parts, &Tessellation::default(), &|_| true).ok()?;
+            Some(of_mesh(&made.mesh, None, curvature))
+        }
     }
 }
 

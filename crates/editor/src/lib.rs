@@ -20,6 +20,7 @@ mod panel;
 mod recovery;
 pub mod results;
 mod shortcuts;
+mod signs;
 mod sketch;
 mod style;
 pub mod view_state;

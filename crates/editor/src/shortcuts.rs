@@ -37,6 +37,7 @@ pub(crate) const SHORTCUTS: &[Shortcut] = &[
     shortcut(0, COMMAND, Key::O, "open", |_| Some(FileCommand::OpenDialog.into())),
     shortcut(0, BOTH, Key::S, "save as", |_| Some(FileCommand::SaveAsDialog.into())),
     shortcut(0, COMMAND, Key::S, "save", |_| Some(FileCommand::Save.into())),
+    shortcut(0, COMMAND, Key::E, "export the results", |_| Some(FileCommand::ExportDialog.into())),
     shortcut(0, COMMAND, Key::Q, "quit", |_| Some(FileCommand::Quit.into())),
     shortcut(0, BOTH, Key::Z, "redo", |_| Some(GraphCommand::Redo.into())),
     shortcut(0, COMMAND, Key::Z, "undo", |_| Some(GraphCommand::Undo.into())),

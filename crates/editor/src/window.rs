@@ -116,9 +116,19 @@ impl App {
                 }
             });
         });
+        let examples = examples(&self.document.folder());
+        ui.add_enabled_ui(!examples.is_empty(), |ui| {
+            ui.menu_button("Graphs beside it", |ui| {
+                for path in examples {
+                    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+                    self.item(ui, &name, "", true, FileCommand::Open(path.clone()));
+                }
+            });
+        });
         ui.separator();
         self.item(ui, "Save", "Ctrl+S", true, FileCommand::Save);
         self.item(ui, "Save as…", "Ctrl+Shift+S", true, FileCommand::SaveAsDialog);
+        self.item(ui, "Export results…", "Ctrl+E", true, FileCommand::ExportDialog);
         ui.separator();
         self.item(ui, "Quit", "Ctrl+Q", true, FileCommand::Quit);
     }
@@ -255,6 +265,18 @@ impl App {
             }
         }
     }
+}
+
+/// The graphs of a folder, or, where it has none, of the folder `graphs` in it: the examples, in a copy of the repository.
+fn examples(folder: &std::path::Path) -> Vec<std::path::PathBuf> {
+    let graphs = |folder: &std::path::Path| {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        let mut graphs: Vec<_> = entries.map(|entry| entry.path()).filter(|path| is_graph(path)).collect();
+        graphs.sort();
+        graphs
+    };
+    let here = graphs(folder);
+    if here.is_empty() { graphs(&folder.join("graphs")) } else { here }
 }
 
 /// The panels with what they show.

@@ -265,3 +265,36 @@ fn a_kind_of_a_newer_version_stays_and_is_shown_as_unknown() {
     assert_eq!(std::fs::read_to_string(&path).unwrap(), text_before);
     let _ = pos2(0.0, 0.0);
 }
+
+#[test]
+fn every_kind_of_the_catalogue_is_in_the_palette_and_the_search() {
+    let mut window = window(Options::default());
+    let canvas = canvas(&window);
+    click(&mut window, "Palette");
+    let catalogue = maquette_nodes::catalogue().unwrap();
+    for kind in catalogue.kinds() {
+        window.get_by_label(&format!("palette {}", kind.name()));
+    }
+    window.hover_at(canvas.center());
+    window.run_steps(2);
+    press(&mut window, Modifiers::NONE, Key::Tab);
+    window.get_by_label("search nodes").type_text("superellipsoid");
+    window.run_steps(3);
+    window.get_by_label("add superellipsoid");
+    press(&mut window, Modifiers::NONE, Key::Escape);
+    assert!(window.query_by_label("search nodes").is_none());
+    assert!(names(&window).is_empty());
+}
+
+#[test]
+fn the_panel_under_the_pointer_fills_the_window_and_goes_back() {
+    let mut window = opened(&graph("vest.ron"));
+    let front = window.state().view_on_screen(maquette_editor::Direction::Front).unwrap();
+    window.hover_at(front.center());
+    window.run_steps(2);
+    press(&mut window, Modifiers::NONE, Key::Space);
+    assert!(rect(&window, "Front view").width() > 1.9 * front.width());
+    assert!(window.query_by_label("Side view").is_none());
+    press(&mut window, Modifiers::NONE, Key::Space);
+    assert_eq!(rect(&window, "Front view"), front);
+}

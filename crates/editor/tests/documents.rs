@@ -196,3 +196,34 @@ fn work_is_recovered_after_a_kill() {
     assert!(std::fs::read_to_string(&path).unwrap().contains("0.0375"));
     assert!(!put_aside(folder.path()), "what is saved need not be put aside");
 }
+
+#[test]
+fn results_are_exported_in_the_formats_of_the_command() {
+    let (folder, path) = copy();
+    let mut window = opened(&path);
+    for name in ["vest.glb", "vest.obj"] {
+        let file = folder.path().join(name);
+        window.state_mut().ask(FileCommand::ExportTo(file.clone()));
+        window.run_steps(2);
+        assert!(std::fs::metadata(&file).unwrap().len() > 10_000, "{}", message(&window));
+    }
+    assert!(folder.path().join("vest.mtl").is_file());
+    window.state_mut().ask(FileCommand::ExportTo(folder.path().join("vest.svg")));
+    window.run_steps(2);
+    assert!(message(&window).contains("SVG is read, not written"), "{}", message(&window));
+    let rail = find(&window, "side rail");
+    window.state_mut().ask(ViewCommand::Display(rail));
+    window.run_steps(2);
+    settle(&mut window);
+    window.state_mut().ask(FileCommand::ExportTo(folder.path().join("nothing.glb")));
+    window.run_steps(2);
+    assert!(message(&window).contains("the result \"vest\" is not there"), "{}", message(&window));
+}
+
+#[test]
+fn an_idle_window_is_not_drawn_again() {
+    let mut window = opened(&graph("vest.ron"));
+    window.run_steps(30);
+    let output = &window.output().viewport_output[&egui::ViewportId::ROOT];
+    assert!(output.repaint_delay > Duration::from_secs(3600), "again in {:?}", output.repaint_delay);
+}

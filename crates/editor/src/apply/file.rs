@@ -2,7 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use maquette_geometry::file_format::{FileFormat, encode};
+use maquette_graph::file::write_whole;
 use maquette_graph::{Edit, Literal};
+use maquette_nodes::results::scene;
 
 use crate::app::App;
 use crate::command::{FileCommand, FileTarget, GraphCommand};
@@ -65,7 +68,17 @@ impl App {
                 let extension = extensions.first().cloned().unwrap_or_default();
                 self.choose(Purpose::Name(target), folder, &extension);
             }
-            FileCommand::Export { path, text } => match maquette_graph::file::write_whole(&path, text.as_bytes()) {
+            FileCommand::ExportDialog => {
+                let name =
+                    self.document.path().and_then(Path::file_stem).map(|name| name.to_string_lossy().into_owned());
+                let name = format!("{}.glb", name.as_deref().unwrap_or("untitled"));
+                self.choose(Purpose::Export, self.document.folder().join(name), "glb");
+            }
+            FileCommand::ExportTo(path) => match self.export(&path) {
+                Ok(written) => self.tell(format!("wrote {written}")),
+                Err(error) => self.complain(format!("{}: {error}", path.display())),
+            },
+            FileCommand::Export { path, text } => match write_whole(&path, text.as_bytes()) {
                 Ok(()) => self.tell(format!("wrote {}", path.display())),
                 Err(error) => self.complain(error),
             },
@@ -85,6 +98,7 @@ impl App {
         match purpose {
             Purpose::Open => self.commands.push(FileCommand::Open(path).into()),
             Purpose::SaveAs => self.commands.push(FileCommand::SaveAs(path).into()),
+            Purpose::Export => self.commands.push(FileCommand::ExportTo(path).into()),
             Purpose::Name(target) => {
                 let file = Literal::File(relative(&path, &self.document.folder()));
                 let edit = match target {
@@ -94,6 +108,25 @@ impl App {
                 self.commands.push(GraphCommand::edit(edit).into());
             }
         }
+    }
+
+    /// Writes the results as they were evaluated last, and says which files.
+    fn export(&self, path: &Path) -> Result<String, String> {
+        let targets = self.document.graph().results();
+        let evaluation = self.results.evaluation().filter(|_| self.results.is_current());
+        let evaluation = evaluation.ok_or("the graph is still evaluated: wait until it is done")?;
+        if let Some(missing) = targets.iter().find(|id| evaluation.values(**id).is_none()) {
+            let name = self.document.graph().node(*missing).map_or("", |node| node.name());
+            return Err(format!("the result \"{name}\" is not there: mend what failed, or show the results again"));
+        }
+        let format = FileFormat::from_path(&path.to_string_lossy()).map_err(|error| error.to_string())?;
+        let files = encode(path, format, &scene(evaluation, &targets)).map_err(|error| error.to_string())?;
+        let mut written = Vec::new();
+        for (path, bytes) in files {
+            write_whole(&path, &bytes).map_err(|error| error.to_string())?;
+            written.push(path.display().to_string());
+        }
+        Ok(written.join(", "))
     }
 
     fn saved(&mut self, saved: Result<(), crate::document::DocumentSaveError>) {

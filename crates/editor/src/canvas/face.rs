@@ -6,6 +6,7 @@ use maquette_graph::{Node, NodeId};
 use crate::command::{Command, FileCommand, GraphCommand, ViewCommand};
 use crate::evaluation_worker::NodeStatus;
 use crate::panel::PanelContext;
+use crate::signs;
 
 use super::arrange::WIDTH;
 use super::ports::{self, Port};
@@ -21,23 +22,48 @@ pub(crate) fn time(duration: std::time::Duration) -> String {
     }
 }
 
-/// A sign, its colour and words for how it stands with a node.
-pub(crate) fn status_sign(status: Option<&NodeStatus>, ui: &Ui) -> (&'static str, Color32, String) {
+/// A colour and words for how it stands with a node.
+fn status_of(status: Option<&NodeStatus>, ui: &Ui) -> (Color32, String) {
     let visuals = ui.visuals();
     let good = if visuals.dark_mode { Color32::from_rgb(110, 200, 120) } else { Color32::from_rgb(20, 120, 50) };
     match status {
-        None => ("○", visuals.weak_text_color(), "not evaluated: nothing that is shown needs it".to_owned()),
-        Some(NodeStatus::Running(share)) => ("▶", visuals.hyperlink_color, format!("running, {:.0} %", share * 100.0)),
-        Some(NodeStatus::Done(duration)) => ("●", good, format!("done in {}", time(*duration))),
-        Some(NodeStatus::Hit) => ("●", good, "known: nothing that it depends on changed".to_owned()),
+        None => (visuals.weak_text_color(), "not evaluated: nothing that is shown needs it".to_owned()),
+        Some(NodeStatus::Running(share)) => (visuals.hyperlink_color, format!("running, {:.0} %", share * 100.0)),
+        Some(NodeStatus::Done(duration)) => (good, format!("done in {}", time(*duration))),
+        Some(NodeStatus::Hit) => (good, "known: nothing that it depends on changed".to_owned()),
         Some(NodeStatus::Failed { port, message }) => {
             let at = port.as_ref().map(|port| format!("input \"{port}\": ")).unwrap_or_default();
-            ("✖", visuals.error_fg_color, format!("{at}{message}"))
+            (visuals.error_fg_color, format!("{at}{message}"))
         }
-        Some(NodeStatus::Waiting(on)) => ("…", visuals.warn_fg_color, format!("waits for {}", on.join(", "))),
-        Some(NodeStatus::Stopped) => ("■", visuals.warn_fg_color, "stopped".to_owned()),
+        Some(NodeStatus::Waiting(on)) => (visuals.warn_fg_color, format!("waits for {}", on.join(", "))),
+        Some(NodeStatus::Stopped) => (visuals.warn_fg_color, "stopped".to_owned()),
     }
 }
+
+/// A dot, filled where the node has a result, a ring where it has none yet, a cross where it failed.
+fn status_dot(ui: &mut Ui, status: Option<&NodeStatus>, colour: Color32, words: &str) {
+    let (rect, response) = ui.allocate_exact_size(egui::vec2(11.0, 14.0), egui::Sense::hover());
+    let middle = rect.center();
+    let stroke = egui::Stroke::new(1.8, colour);
+    match status {
+        Some(NodeStatus::Done(_) | NodeStatus::Hit) => {
+            ui.painter().circle_filled(middle, 4.0, colour);
+        }
+        Some(NodeStatus::Failed { .. }) => {
+            let arm = egui::vec2(3.5, 3.5);
+            let other = egui::vec2(3.5, -3.5);
+            ui.painter().line_segment([middle - arm, middle + arm], stroke);
+            ui.painter().line_segment([middle - other, middle + other], stroke);
+        }
+        _ => {
+            ui.painter().circle_stroke(middle, 3.5, stroke);
+        }
+    }
+    response.on_hover_text(words);
+}
+
+/// Zoom below which only the title is worth reading.
+const TITLE_ONLY: f32 = 0.62;
 
 /// Draws the inside of a node and places its sockets.
 pub(crate) fn show(
@@ -46,52 +72,60 @@ pub(crate) fn show(
     context: &mut PanelContext<'_>,
     id: NodeId,
     node: &Node,
+    zoom: f32,
 ) {
     ui.set_width(WIDTH);
     ui.spacing_mut().item_spacing = egui::vec2(4.0, 2.0);
     ui.style_mut().interaction.selectable_labels = false;
     let status = context.results.status(&context.path_of(node.name()));
-    let (sign, colour, words) = status_sign(status, ui);
+    let (colour, words) = status_of(status, ui);
     let outcome = context.results.outcome(id).filter(|_| context.is_outermost());
-    ui.horizontal(|ui| {
-        ui.label(RichText::new(sign).color(colour).size(12.0)).on_hover_text(&words);
-        let name = RichText::new(node.name()).strong();
+    let far = zoom < TITLE_ONLY;
+    let head = if far { 36.0 } else { 18.0 };
+    ui.allocate_ui_with_layout(egui::vec2(WIDTH, head), Layout::left_to_right(Align::Center), |ui| {
+        status_dot(ui, status, colour, &words);
+        // Seen from afar the title takes the place of what can't be read anyway.
+        let size = if far { (12.0 / zoom).min(27.0) } else { 13.5 };
+        let name = RichText::new(node.name()).strong().size(size);
         let name = if node.is_muted() { name.strikethrough().weak() } else { name };
         let summary = context.is_outermost().then(|| summary(context, id)).flatten().unwrap_or_default();
         let kind = node.kind().map_or("unknown kind".to_owned(), |kind| kind.description().to_owned());
         ui.add(egui::Label::new(name).truncate()).on_hover_text(format!("{}: {kind}{summary}", node.kind_name()));
+        ui.set_min_size(egui::vec2(ui.min_size().x, head));
     });
-    ui.horizontal(|ui| {
-        ui.spacing_mut().button_padding = egui::vec2(3.0, 0.0);
-        let unknown = node.kind().is_none();
-        let kind = RichText::new(node.kind_name()).size(10.5);
-        let kind = if unknown { kind.color(ui.visuals().warn_fg_color) } else { kind.weak() };
-        ui.add(egui::Label::new(kind).truncate());
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            if let Some(outcome) = outcome.filter(|outcome| !outcome.duration.is_zero()) {
-                ui.label(RichText::new(time(outcome.duration)).size(10.0).weak());
-            }
-            flags(ui, context, id, node);
+    if !far {
+        ui.allocate_ui_with_layout(egui::vec2(WIDTH, 16.0), Layout::left_to_right(Align::Center), |ui| {
+            ui.spacing_mut().button_padding = egui::vec2(3.0, 0.0);
+            let unknown = node.kind().is_none();
+            let kind = RichText::new(node.kind_name()).size(10.5);
+            let kind = if unknown { kind.color(ui.visuals().warn_fg_color) } else { kind.weak() };
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                if let Some(outcome) = outcome.filter(|outcome| !outcome.duration.is_zero()) {
+                    ui.label(RichText::new(time(outcome.duration)).size(10.0).weak());
+                }
+                flags(ui, context, id, node);
+                ui.with_layout(Layout::left_to_right(Align::Center), |ui| ui.add(egui::Label::new(kind).truncate()));
+            });
         });
-    });
+    }
     if let Some(NodeStatus::Running(share)) = status {
         #[expect(clippy::cast_possible_truncation, reason = "a share")]
         ui.add(egui::ProgressBar::new(*share as f32).desired_height(3.0));
     }
-    if matches!(status, Some(NodeStatus::Failed { .. })) {
+    if matches!(status, Some(NodeStatus::Failed { .. })) && !far {
         let badge = RichText::new(&words).size(10.5).color(ui.visuals().error_fg_color);
         ui.add(egui::Label::new(badge).truncate()).on_hover_text(&words);
     }
     let expanded = context.view.expanded.contains(&id);
     for (socket, port) in ports::inputs(node).iter().enumerate().filter(|(_, port)| ports::is_shown(port, expanded)) {
-        sockets.row(ui, Some(socket), None, |ui| row(ui, port, false));
+        sockets.row(ui, Some(socket), None, |ui| row(ui, port, false, far));
     }
     for (socket, port) in ports::outputs(context.graph(), id, node).iter().enumerate() {
-        sockets.row(ui, None, Some(socket), |ui| row(ui, port, true));
+        sockets.row(ui, None, Some(socket), |ui| row(ui, port, true, far));
     }
 }
 
-fn row(ui: &mut Ui, port: &Port, is_output: bool) {
+fn row(ui: &mut Ui, port: &Port, is_output: bool, far: bool) {
     let text = RichText::new(&port.name).size(11.5);
     let text = if port.missing { text.color(ui.visuals().warn_fg_color) } else { text };
     let wire = port.wire.map_or("unknown", |wire| wire.name());
@@ -99,7 +133,11 @@ fn row(ui: &mut Ui, port: &Port, is_output: bool) {
     let hint = format!("{} ({wire}): {}{needed}", port.name, port.description);
     let layout = if is_output { Layout::right_to_left(Align::Center) } else { Layout::left_to_right(Align::Center) };
     ui.allocate_ui_with_layout(egui::vec2(WIDTH, 16.0), layout, |ui| {
-        ui.label(text).on_hover_text(hint);
+        if far {
+            ui.allocate_space(egui::vec2(10.0, 16.0));
+        } else {
+            ui.label(text).on_hover_text(hint);
+        }
     });
 }
 
@@ -121,22 +159,22 @@ fn flags(ui: &mut Ui, context: &mut PanelContext<'_>, id: NodeId, node: &Node) {
     };
     let mut asked: Vec<Command> = Vec::new();
     if ports::inputs(node).iter().any(|port| port.typed && !port.linked)
-        && flag(ui, "≡", context.view.expanded.contains(&id), "expand", "Show inputs that hold values")
+        && flag(ui, signs::EXPAND, context.view.expanded.contains(&id), "expand", "Show inputs that hold values")
     {
         asked.push(ViewCommand::Expand(id).into());
     }
     if node.body().is_some_and(|body| body.graph().is_some())
-        && flag(ui, "↘", false, "enter", "Enter the graph within (Enter)")
+        && flag(ui, signs::ENTER, false, "enter", "Enter the graph within (Enter)")
     {
         asked.push(ViewCommand::Enter(id).into());
     }
     if context.is_outermost() {
         let pinned = context.view.pinned.contains(&id);
-        if flag(ui, "📌", pinned, "pin", "Keep showing it behind what is displayed") {
+        if flag(ui, signs::PIN, pinned, "pin", "Keep showing it behind what is displayed") {
             asked.push(ViewCommand::Pin(id).into());
         }
         let displayed = context.view.displayed == Some(id);
-        if flag(ui, "👁", displayed, "display", "Show only this node in the views (D)") {
+        if flag(ui, signs::DISPLAY, displayed, "display", "Show only this node in the views (D)") {
             asked.push(ViewCommand::Display(id).into());
         }
     }

@@ -188,6 +188,7 @@ impl Canvas {
     fn nodes(&mut self, nodes: &mut egui_graph::NodesCtx<'_>, ui: &mut egui::Ui, context: &mut PanelContext<'_>) {
         let graph = context.graph();
         let dark = ui.visuals().dark_mode;
+        let zoom = 1.0 / self.to_canvas.scaling.max(1e-3);
         for (id, node) in graph.nodes() {
             let inputs = ports::inputs(node);
             let outputs = ports::outputs(graph, id, node);
@@ -208,7 +209,7 @@ impl Canvas {
                     if node.is_muted() {
                         frame.fill = frame.fill.gamma_multiply(0.7);
                     }
-                    node_context.framed_with(frame, |ui, sockets| face::show(ui, sockets, context, id, node))
+                    node_context.framed_with(frame, |ui, sockets| face::show(ui, sockets, context, id, node, zoom))
                 });
             self.paint_sockets(ui, &response, &inputs, &outputs, dark);
             match response.edge_event() {

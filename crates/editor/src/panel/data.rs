@@ -7,6 +7,7 @@ use maquette_graph::{Cell, Table, Unit};
 
 use crate::command::FileCommand;
 use crate::panel::PanelContext;
+use crate::signs;
 
 /// The data panel.
 #[derive(Default)]
@@ -112,11 +113,11 @@ impl Data {
                 for (index, column) in table.columns.iter().enumerate() {
                     header.col(|ui| {
                         let sign = match sorted {
-                            Some((by, true)) if by == index => " ▼",
-                            Some((by, false)) if by == index => " ▲",
+                            Some((by, true)) if by == index => signs::DOWN,
+                            Some((by, false)) if by == index => signs::UP,
                             _ => "",
                         };
-                        let text = format!("{}{}{sign}", column.name, unit(column.unit));
+                        let text = format!("{}{} {sign}", column.name, unit(column.unit));
                         if ui.add(egui::Button::new(RichText::new(text).strong()).frame(false)).clicked() {
                             asked = Some(index);
                         }

@@ -6,6 +6,7 @@ use maquette_graph::file::Severity;
 
 use crate::command::ViewCommand;
 use crate::panel::PanelContext;
+use crate::signs;
 
 /// One line of the list.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,8 +48,11 @@ pub(crate) fn show(ui: &mut Ui, context: &mut PanelContext<'_>) {
     }
     egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         for entry in entries {
-            let (sign, colour) =
-                if entry.is_error { ("✖", ui.visuals().error_fg_color) } else { ("⚠", ui.visuals().warn_fg_color) };
+            let (sign, colour) = if entry.is_error {
+                (signs::ERROR, ui.visuals().error_fg_color)
+            } else {
+                (signs::WARNING, ui.visuals().warn_fg_color)
+            };
             ui.horizontal_wrapped(|ui| {
                 ui.label(RichText::new(sign).color(colour));
                 if let Some(node) = &entry.node

@@ -96,14 +96,14 @@ pub(crate) fn picture(context: &PanelContext<'_>, of: &PictureOf<'_>, grid: &Gri
             }
             let roles = [
                 (LineRole::Curve, settings.curves, drawable.colour.unwrap_or(palette.curve), 2.0),
-                (LineRole::Section, settings.sections, palette.section, 1.2),
+                (LineRole::Section, settings.sections, palette.section, 1.0),
                 (LineRole::Rail, settings.sections, palette.rail, 2.0),
             ];
             for (role, wanted, colour, width) in roles {
                 if wanted && drawable.lines.iter().any(|line| line.role == role) {
                     let colour = if is_active && role == LineRole::Curve { ACCENT } else { colour };
                     let source = LineSource::Drawable(Arc::clone(drawable), role);
-                    lines.push(LineDraw { source, colour, width, on_top: is_active });
+                    lines.push(LineDraw { source, colour, width, on_top: is_active && role == LineRole::Curve });
                 }
             }
         }

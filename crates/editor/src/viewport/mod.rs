@@ -16,6 +16,7 @@ use glam::DVec3;
 use maquette_graph::NodeId;
 
 use crate::command::ViewCommand;
+use crate::drawable::LineRole;
 use crate::panel::PanelContext;
 use crate::sketch::target::{SketchTarget, points};
 use crate::view_state::Tool;
@@ -243,6 +244,7 @@ impl ViewPane {
             let line: Vec<egui::Pos2> = drawn.iter().filter_map(|p| screen(plane.place(*p))).collect();
             painter.add(egui::Shape::line(line, egui::Stroke::new(2.5, egui::Color32::from_rgb(255, 160, 45))));
         }
+        self.number_curves(ui, rect, context, size);
         let pulling = context.view.tool == Tool::Pull;
         if let Some(target) = context.view.active.and_then(|id| SketchTarget::of(context.graph(), id))
             && (pulling || context.view.tool == Tool::Sketch)
@@ -260,6 +262,44 @@ impl ViewPane {
             }
         }
         gizmo::show(ui, rect, &mut self.camera);
+    }
+}
+
+impl ViewPane {
+    /// Numbers the curves of the active node and shows which way they run: what a `sort` decided, for one.
+    fn number_curves(&self, ui: &egui::Ui, rect: egui::Rect, context: &PanelContext<'_>, size: ViewSize) {
+        let Some(active) = context.view.active.filter(|_| context.is_outermost() && context.settings.curves) else {
+            return;
+        };
+        let painter = ui.painter().with_clip_rect(rect);
+        let screen = |place: &glam::Vec3| self.camera.project(size, place.as_dvec3()).map(|seen| rect.min + seen);
+        let accent = egui::Color32::from_rgb(255, 176, 66);
+        for shown in context.results.shown().iter().filter(|shown| shown.node == active) {
+            for drawable in &shown.drawables {
+                let curves = drawable.lines.iter().filter(|line| line.role == LineRole::Curve);
+                // More numbers than that nobody can read.
+                for (number, line) in curves.take(24).enumerate() {
+                    let ahead = (line.points.len() / 8).max(1);
+                    let begin = line.points.first().and_then(screen);
+                    let next = line.points.get(ahead).and_then(screen);
+                    let (Some(begin), Some(next)) = (begin, next) else { continue };
+                    if (next - begin).length() > 6.0 {
+                        let along = (next - begin).normalized() * 14.0;
+                        painter.arrow(begin, along, egui::Stroke::new(2.0, accent));
+                    }
+                    let place = begin + egui::vec2(5.0, -5.0);
+                    let font = egui::FontId::proportional(12.0);
+                    painter.text(
+                        place + egui::vec2(1.0, 1.0),
+                        egui::Align2::LEFT_BOTTOM,
+                        number,
+                        font.clone(),
+                        egui::Color32::BLACK,
+                    );
+                    painter.text(place, egui::Align2::LEFT_BOTTOM, number, font, accent);
+                }
+            }
+        }
     }
 }
 

@@ -9,6 +9,7 @@ use maquette_graph::{Edit, InputSpec, Literal, Node, NodeId, OutcomeState, Sourc
 
 use crate::command::{FileCommand, FileTarget, GraphCommand, ViewCommand};
 use crate::panel::PanelContext;
+use crate::signs;
 
 use self::value::{Changed, edit_literal};
 
@@ -129,7 +130,7 @@ fn outcome(ui: &mut Ui, context: &PanelContext<'_>, id: NodeId) {
         }
         OutcomeState::Done { report, .. } => {
             for warning in &report.warnings {
-                ui.label(RichText::new(format!("⚠ {warning}")).color(ui.visuals().warn_fg_color));
+                ui.label(RichText::new(format!("{} {warning}", signs::WARNING)).color(ui.visuals().warn_fg_color));
             }
             for note in &report.notes {
                 ui.label(RichText::new(note).weak().size(11.5));
@@ -145,9 +146,9 @@ fn held(context: &PanelContext<'_>, source: &Source) -> String {
         Source::Literal { literal, .. } => literal.to_value().summary(),
         Source::Link(link) => {
             let name = context.graph().node(link.node).map_or("?", |node| node.name());
-            format!("← {name}.{}", link.output)
+            format!("{} {name}.{}", signs::FROM, link.output)
         }
-        Source::Parameter(name) => format!("← parameter {name}"),
+        Source::Parameter(name) => format!("{} parameter {name}", signs::FROM),
         Source::Unread(text) => text.clone(),
     }
 }
@@ -212,13 +213,13 @@ fn buttons(ui: &mut Ui, context: &mut PanelContext<'_>, id: NodeId, node: &Node,
         response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, &label));
         response.on_hover_text(hint).clicked()
     };
-    if source.is_some() && small(ui, "⟲", format!("reset {}", input.name), "Back to the default, unlinked") {
+    if source.is_some() && small(ui, signs::RESET, format!("reset {}", input.name), "Back to the default, unlinked") {
         let edits = vec![Edit::Reset { node: id, input: input.name.clone() }];
         context.ask(GraphCommand::Edit { name: format!("reset {}", input.name), edits, gesture: None });
     }
     let promotable =
         input.default.is_some() && !matches!(source, Some(Source::Link(_) | Source::Parameter(_) | Source::Unread(_)));
-    if promotable && small(ui, "⇧", format!("promote {}", input.name), "Make it a parameter of the graph") {
+    if promotable && small(ui, signs::PROMOTE, format!("promote {}", input.name), "Make it a parameter of the graph") {
         context.ask(GraphCommand::Promote { node: id, input: input.name.clone() });
     }
 }
@@ -282,7 +283,7 @@ fn graph(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.separator();
     if graph.parameters().len() == 0 {
         ui.label(
-            RichText::new("Select a node to see its inputs. ⇧ beside an input makes it a parameter of the graph.")
+            RichText::new("Select a node to see its inputs. ⬆ beside an input makes it a parameter of the graph.")
                 .weak(),
         );
     }
@@ -290,7 +291,7 @@ fn graph(ui: &mut Ui, context: &mut PanelContext<'_>) {
         ui.horizontal(|ui| {
             ui.label(RichText::new(parameter.name()).strong()).on_hover_text(parameter.description());
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let remove = ui.add(egui::Button::new("🗑").small().frame(false));
+                let remove = ui.add(egui::Button::new(signs::REMOVE).small().frame(false));
                 let label = format!("remove parameter {}", parameter.name());
                 remove.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, &label));
                 if remove.on_hover_text("Remove the parameter; inputs keep its value").clicked() {

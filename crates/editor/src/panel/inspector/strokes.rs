@@ -5,6 +5,7 @@ use maquette_graph::{Edit, InputSpec, Literal, NodeId, Stroke};
 
 use crate::command::GraphCommand;
 use crate::panel::PanelContext;
+use crate::signs;
 use crate::sketch::correct::{mirrored, reversed};
 
 pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>, id: NodeId, input: &InputSpec, strokes: &[Stroke]) {
@@ -42,18 +43,18 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>, id: NodeId, inpu
                 response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, &label));
                 response.on_hover_text(&label).clicked()
             };
-            if small("⭕", "close", stroke.closed) {
+            if small(signs::CLOSE, "close", stroke.closed) {
                 made = Some(("close a stroke", with(Stroke { closed: !stroke.closed, ..stroke.clone() })));
             }
-            if small("⇄", "reverse", false) {
+            if small(signs::REVERSE, "reverse", false) {
                 made = Some(("reverse a stroke", with(reversed(stroke))));
             }
-            if small("◫", "mirror", false) {
+            if small(signs::MIRROR, "mirror", false) {
                 let mut strokes = strokes.to_vec();
                 strokes.insert(index + 1, mirrored(stroke));
                 made = Some(("mirror a stroke", strokes));
             }
-            if small("🗑", "remove", false) {
+            if small(signs::REMOVE, "remove", false) {
                 let mut strokes = strokes.to_vec();
                 strokes.remove(index);
                 made = Some(("remove a stroke", strokes));

@@ -4,6 +4,7 @@ use egui::{RichText, Ui};
 use maquette_graph::{InputSpec, Literal, LiteralKind, Range, Unit};
 
 use crate::panel::PanelContext;
+use crate::signs;
 
 /// What became of a field in this frame.
 #[derive(Debug, Default)]
@@ -248,7 +249,7 @@ fn text_field(ui: &mut Ui, label: &str, text: &str) -> Option<String> {
 fn file_field(ui: &mut Ui, context: &PanelContext<'_>, label: &str, path: &str) -> Changed {
     let mut changed = Changed::default();
     ui.horizontal(|ui| {
-        let browse = ui.button("📂").on_hover_text("Choose a file");
+        let browse = ui.button(signs::BROWSE).on_hover_text("Choose a file");
         name(&browse, egui::WidgetType::Button, &format!("browse {label}"));
         changed.browse = browse.clicked();
         changed.value = text_field(ui, label, path).map(Literal::File);
