@@ -316,7 +316,7 @@ impl eframe::App for App {
         self.closing(&context);
         if self.asking.is_none() {
             let over = self.is_over_canvas(&context);
-            self.commands.extend(shortcuts::pressed(&context, &self.view, over));
+            self.commands.extend(shortcuts::pressed(&context, &self.view, over, self.canvas.is_searching()));
         }
         self.show(ui);
         self.questions(&context);

@@ -81,8 +81,9 @@ impl Shortcut {
 }
 
 /// What the keys of this frame ask for. While text is typed, keys are text; away from the canvas, Tab goes from field to field.
-pub(crate) fn pressed(context: &egui::Context, view: &ViewState, over_canvas: bool) -> Vec<Command> {
-    let typing = context.egui_wants_keyboard_input();
+/// While something is `searching`, keys are the search's.
+pub(crate) fn pressed(context: &egui::Context, view: &ViewState, over_canvas: bool, searching: bool) -> Vec<Command> {
+    let typing = searching || context.egui_wants_keyboard_input();
     let mut asked = Vec::new();
     context.input_mut(|input| {
         for shortcut in SHORTCUTS {

@@ -226,7 +226,7 @@ fn a_broken_node_says_what_is_wrong_in_the_panel_that_leads_to_it() {
     settle(&mut window);
     assert!(failure(&window, "side rail").unwrap().contains("there are no strokes"));
     window.get_by_label("Problems (1)");
-    assert!(window.query_all_by_label_contains("there are no strokes: draw some").count() > 1);
+    assert!(window.query_all_by_label_contains("there are no strokes: draw some").count() > 0);
     assert!(window.query_by_label("1 node(s) failed").is_some());
     undo(&mut window);
     assert!(window.query_by_label("Problems (1)").is_none());

@@ -92,6 +92,11 @@ impl Canvas {
         Some(self.to_canvas.inverse() * place)
     }
 
+    /// Whether a node to add is searched.
+    pub(crate) fn is_searching(&self) -> bool {
+        self.search.is_some()
+    }
+
     /// Opens the search at a point of the screen, or closes it.
     pub(crate) fn toggle_search(&mut self, screen: Pos2) {
         self.search = match self.search {

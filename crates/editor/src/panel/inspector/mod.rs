@@ -283,7 +283,7 @@ fn graph(ui: &mut Ui, context: &mut PanelContext<'_>) {
     ui.separator();
     if graph.parameters().len() == 0 {
         ui.label(
-            RichText::new("Select a node to see its inputs. ⬆ beside an input makes it a parameter of the graph.")
+            RichText::new("Select a node to see its inputs. ⏶ beside an input makes it a parameter of the graph.")
                 .weak(),
         );
     }
