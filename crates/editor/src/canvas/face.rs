@@ -64,6 +64,11 @@ fn status_dot(ui: &mut Ui, status: Option<&NodeStatus>, colour: Color32, words: 
 
 /// Zoom below which only the title is worth reading.
 const TITLE_ONLY: f32 = 0.62;
+/// Heights of the lines of a node and of what is between them, points.
+const TITLE: f32 = 18.0;
+const KIND: f32 = 16.0;
+const ROW: f32 = 16.0;
+const GAP: f32 = 2.0;
 
 /// Draws the inside of a node and places its sockets.
 pub(crate) fn show(
@@ -75,68 +80,113 @@ pub(crate) fn show(
     zoom: f32,
 ) {
     ui.set_width(WIDTH);
-    ui.spacing_mut().item_spacing = egui::vec2(4.0, 2.0);
+    ui.spacing_mut().item_spacing = egui::vec2(4.0, GAP);
     ui.style_mut().interaction.selectable_labels = false;
     let status = context.results.status(&context.path_of(node.name()));
     let (colour, words) = status_of(status, ui);
     let outcome = context.results.outcome(id).filter(|_| context.is_outermost());
-    let far = zoom < TITLE_ONLY;
-    let head = if far { 36.0 } else { 18.0 };
-    ui.allocate_ui_with_layout(egui::vec2(WIDTH, head), Layout::left_to_right(Align::Center), |ui| {
+    let expanded = context.view.expanded.contains(&id);
+    let inputs: Vec<(usize, Port)> =
+        ports::inputs(node).into_iter().enumerate().filter(|(_, port)| ports::is_shown(port, expanded)).collect();
+    let outputs = ports::outputs(context.graph(), id, node);
+    if zoom < TITLE_ONLY {
+        let rows = inputs.iter().map(|(socket, _)| (Some(*socket), None));
+        let rows = rows.chain((0..outputs.len()).map(|socket| (None, Some(socket))));
+        from_afar(ui, sockets, node, zoom, (status, colour, &words), rows.collect());
+        return;
+    }
+    line(ui, TITLE, |ui| {
         status_dot(ui, status, colour, &words);
-        // Seen from afar the title takes the place of what can't be read anyway.
-        let size = if far { (12.0 / zoom).min(27.0) } else { 13.5 };
-        let name = RichText::new(node.name()).strong().size(size);
+        let name = RichText::new(node.name()).strong().size(13.5);
         let name = if node.is_muted() { name.strikethrough().weak() } else { name };
         let summary = context.is_outermost().then(|| summary(context, id)).flatten().unwrap_or_default();
         let kind = node.kind().map_or("unknown kind".to_owned(), |kind| kind.description().to_owned());
         ui.add(egui::Label::new(name).truncate()).on_hover_text(format!("{}: {kind}{summary}", node.kind_name()));
-        ui.set_min_size(egui::vec2(ui.min_size().x, head));
     });
-    if !far {
-        ui.allocate_ui_with_layout(egui::vec2(WIDTH, 16.0), Layout::left_to_right(Align::Center), |ui| {
-            ui.spacing_mut().button_padding = egui::vec2(3.0, 0.0);
-            let unknown = node.kind().is_none();
-            let kind = RichText::new(node.kind_name()).size(10.5);
-            let kind = if unknown { kind.color(ui.visuals().warn_fg_color) } else { kind.weak() };
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                if let Some(outcome) = outcome.filter(|outcome| !outcome.duration.is_zero()) {
-                    ui.label(RichText::new(time(outcome.duration)).size(10.0).weak());
-                }
-                flags(ui, context, id, node);
-                ui.with_layout(Layout::left_to_right(Align::Center), |ui| ui.add(egui::Label::new(kind).truncate()));
-            });
+    line(ui, KIND, |ui| {
+        ui.spacing_mut().button_padding = egui::vec2(3.0, 0.0);
+        let unknown = node.kind().is_none();
+        let kind = RichText::new(node.kind_name()).size(10.5);
+        let kind = if unknown { kind.color(ui.visuals().warn_fg_color) } else { kind.weak() };
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if let Some(outcome) = outcome.filter(|outcome| !outcome.duration.is_zero()) {
+                ui.label(RichText::new(time(outcome.duration)).size(10.0).weak());
+            }
+            flags(ui, context, id, node);
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| ui.add(egui::Label::new(kind).truncate()));
         });
-    }
+    });
     if let Some(NodeStatus::Running(share)) = status {
         #[expect(clippy::cast_possible_truncation, reason = "a share")]
         ui.add(egui::ProgressBar::new(*share as f32).desired_height(3.0));
     }
-    if matches!(status, Some(NodeStatus::Failed { .. })) && !far {
+    if matches!(status, Some(NodeStatus::Failed { .. })) {
         let badge = RichText::new(&words).size(10.5).color(ui.visuals().error_fg_color);
         ui.add(egui::Label::new(badge).truncate()).on_hover_text(&words);
     }
-    let expanded = context.view.expanded.contains(&id);
-    for (socket, port) in ports::inputs(node).iter().enumerate().filter(|(_, port)| ports::is_shown(port, expanded)) {
-        sockets.row(ui, Some(socket), None, |ui| row(ui, port, false, far));
+    for (socket, port) in &inputs {
+        sockets.row(ui, Some(*socket), None, |ui| row(ui, port, false));
     }
-    for (socket, port) in ports::outputs(context.graph(), id, node).iter().enumerate() {
-        sockets.row(ui, None, Some(socket), |ui| row(ui, port, true, far));
+    for (socket, port) in outputs.iter().enumerate() {
+        sockets.row(ui, None, Some(socket), |ui| row(ui, port, true));
     }
 }
 
-fn row(ui: &mut Ui, port: &Port, is_output: bool, far: bool) {
+/// A node of which only the title can be read: one widget, so that a large graph stays quick.
+fn from_afar(
+    ui: &mut Ui,
+    sockets: &mut egui_graph::SocketLayout,
+    node: &Node,
+    zoom: f32,
+    (status, colour, words): (Option<&NodeStatus>, Color32, &str),
+    rows: Vec<(Option<usize>, Option<usize>)>,
+) {
+    #[expect(clippy::cast_precision_loss, reason = "a few ports")]
+    let count = rows.len() as f32;
+    let head = TITLE + KIND + 2.0 * GAP;
+    let (rect, response) =
+        ui.allocate_exact_size(egui::vec2(WIDTH, head + count * (ROW + GAP) - GAP), egui::Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Label, true, node.name()));
+    response.on_hover_text(format!("{}: {words}", node.kind_name()));
+    let middle = rect.left_top() + egui::vec2(8.0, 0.5 * head);
+    match status {
+        Some(NodeStatus::Done(_) | NodeStatus::Hit) => ui.painter().circle_filled(middle, 6.0, colour),
+        _ => ui.painter().circle_stroke(middle, 6.0, egui::Stroke::new(3.0, colour)),
+    };
+    let size = (12.0 / zoom.max(1e-3)).min(27.0);
+    let text = if node.is_muted() { ui.visuals().weak_text_color() } else { ui.visuals().strong_text_color() };
+    let place = egui::pos2(rect.left() + 19.0, middle.y);
+    let painter = ui.painter().with_clip_rect(rect.intersect(ui.clip_rect()));
+    painter.text(place, egui::Align2::LEFT_CENTER, node.name(), egui::FontId::proportional(size), text);
+    let mut cross = rect.top() + head + 0.5 * ROW;
+    for (input, output) in rows {
+        if let Some(socket) = input {
+            sockets.input_at(socket, cross);
+        }
+        if let Some(socket) = output {
+            sockets.output_at(socket, cross);
+        }
+        cross += ROW + GAP;
+    }
+}
+
+/// A line of a node, as wide as all of them whatever it holds.
+fn line(ui: &mut Ui, height: f32, content: impl FnOnce(&mut Ui)) {
+    let (rect, _) = ui.allocate_exact_size(egui::vec2(WIDTH, height), egui::Sense::hover());
+    let layout = Layout::left_to_right(Align::Center);
+    content(&mut ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout)));
+}
+
+fn row(ui: &mut Ui, port: &Port, is_output: bool) {
     let text = RichText::new(&port.name).size(11.5);
     let text = if port.missing { text.color(ui.visuals().warn_fg_color) } else { text };
-    let wire = port.wire.map_or("unknown", |wire| wire.name());
-    let needed = if port.missing { "\nnothing is linked here, and something must be" } else { "" };
-    let hint = format!("{} ({wire}): {}{needed}", port.name, port.description);
     let layout = if is_output { Layout::right_to_left(Align::Center) } else { Layout::left_to_right(Align::Center) };
-    ui.allocate_ui_with_layout(egui::vec2(WIDTH, 16.0), layout, |ui| {
-        if far {
-            ui.allocate_space(egui::vec2(10.0, 16.0));
-        } else {
-            ui.label(text).on_hover_text(hint);
+    ui.allocate_ui_with_layout(egui::vec2(WIDTH, ROW), layout, |ui| {
+        let label = ui.label(text);
+        if label.hovered() {
+            let wire = port.wire.map_or("unknown", |wire| wire.name());
+            let needed = if port.missing { "\nnothing is linked here, and something must be" } else { "" };
+            label.on_hover_text(format!("{} ({wire}): {}{needed}", port.name, port.description));
         }
     });
 }
