@@ -114,7 +114,7 @@ fn every_saved_graph_is_tested_here() {
         .collect();
     assert_eq!(
         saved,
-        ["forearm", "from-template", "head", "hip", "leg", "legs", "neck", "open-strokes", "vest"]
+        ["forearm", "from-template", "head", "hip", "human", "leg", "legs", "neck", "open-strokes", "vest"]
             .map(str::to_owned)
             .into(),
         "add a test for a new graph"

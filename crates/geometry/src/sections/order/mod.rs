@@ -1,7 +1,7 @@
 //! Cross-sections in any order put in the order along the limb, made to run the same way and to begin at the same side.
 //!
-//! The order of work: a section that repeats another is dropped ([`doubles`]), the shortest way through all of them is
-//! found ([`path`]), each is run counter-clockwise about that way, and its start is moved ([`turn`]).
+//! The order of work: a section that repeats another is dropped (`doubles`), the shortest way through all of them is
+//! found (`path`), each is run counter-clockwise about that way, and its start is moved (`turn`).
 
 mod doubles;
 mod path;
