@@ -1,6 +1,7 @@
 //! What the evaluation gave, as the panels see it.
 
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use maquette_graph::{Evaluation, NodeId, Outcome, OutcomeState, Report, Value};
 
@@ -15,7 +16,12 @@ pub struct Results {
     /// The newest generation that was asked for.
     wanted: u64,
     progress: Option<(usize, usize)>,
+    /// Since when what is shown is no longer that of the graph.
+    old_since: Option<Instant>,
 }
+
+/// How long a result may be old before it is worth a word: what follows a drag should not flicker.
+const WORTH_A_WORD: Duration = Duration::from_millis(250);
 
 impl Results {
     pub(crate) fn accept(&mut self, finished: Finished) {
@@ -24,6 +30,9 @@ impl Results {
             return;
         }
         self.finished = Some(finished);
+        if self.is_current() {
+            self.old_since = None;
+        }
     }
 
     pub(crate) fn update(&mut self, statuses: Arc<Statuses>, progress: Option<(usize, usize)>) {
@@ -33,6 +42,12 @@ impl Results {
 
     pub(crate) fn expect(&mut self, generation: u64) {
         self.wanted = generation;
+        self.old_since.get_or_insert_with(Instant::now);
+    }
+
+    /// Whether what is shown has been old for so long that one should know.
+    pub(crate) fn is_late(&self) -> bool {
+        self.old_since.is_some_and(|since| since.elapsed() > WORTH_A_WORD)
     }
 
     /// Forgets everything, for another document.

@@ -227,3 +227,24 @@ fn an_idle_window_is_not_drawn_again() {
     let output = &window.output().viewport_output[&egui::ViewportId::ROOT];
     assert!(output.repaint_delay > Duration::from_secs(3600), "again in {:?}", output.repaint_delay);
 }
+
+#[test]
+fn closing_the_window_asks_for_unsaved_work() {
+    let (_folder, path) = copy();
+    let mut window = opened(&path);
+    let close = |window: &mut Window| {
+        let viewport = window.input_mut().viewports.entry(egui::ViewportId::ROOT).or_default();
+        viewport.events.push(egui::ViewportEvent::Close);
+        window.step();
+        let commands = &window.output().viewport_output[&egui::ViewportId::ROOT].commands;
+        commands.contains(&egui::ViewportCommand::CancelClose)
+    };
+    assert!(!close(&mut window), "nothing is unsaved");
+    let mut window = opened(&path);
+    set(&mut window, "side rail", "offset", Literal::Number(0.02));
+    assert!(close(&mut window), "it stays open");
+    window.run_steps(2);
+    window.get_by_label("Save vest.ron first?");
+    click(&mut window, "Cancel");
+    assert!(window.state().document().is_changed());
+}

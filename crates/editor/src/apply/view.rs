@@ -58,7 +58,12 @@ impl App {
             }
             ViewCommand::FrameSelected => self.views.iter_mut().for_each(|view| view.framing = Framing::Selected),
             ViewCommand::Maximise => self.toggle_maximised(context),
-            ViewCommand::Stop => self.worker.stop(),
+            ViewCommand::Stop => {
+                if self.results.progress().is_some() {
+                    self.worker.stop();
+                    self.tell("stopped: the next change evaluates again");
+                }
+            }
             ViewCommand::Search => {
                 let over = context.input(|i| i.pointer.latest_pos()).filter(|_| self.is_over_canvas(context));
                 let place = over.or(self.canvas.rect.map(|rect| rect.center()));

@@ -234,9 +234,9 @@ impl ViewPane {
                 weak,
             );
         }
-        if !context.results.is_current() && !context.results.shown().is_empty() {
+        if context.results.is_late() && !context.results.shown().is_empty() {
             let place = rect.right_bottom() + egui::vec2(-10.0, -8.0);
-            painter.text(place, egui::Align2::RIGHT_BOTTOM, "evaluating: this is the result before", font, weak);
+            painter.text(place, egui::Align2::RIGHT_BOTTOM, "this is the result before the last change", font, weak);
         }
         let corner = rect.min;
         let screen = |place: DVec3| self.camera.project(size, place).map(|seen| corner + seen);
