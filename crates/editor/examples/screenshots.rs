@@ -71,7 +71,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     window.state_mut().ask(ViewCommand::Take(Tool::Select));
     window.state_mut().settings_mut().shading = Shading::Zebra;
-    find(&mut window, "body")?;
+    find(&mut window, "vest")?;
     write(&mut window, &folder.join("editor-zebra.png"))?;
 
     window.state_mut().settings_mut().shading = Shading::Matcap;

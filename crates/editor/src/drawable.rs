@@ -41,6 +41,8 @@ pub(crate) struct Surface {
     pub(crate) triangles: Vec<[u32; 3]>,
     /// Its edges, each once.
     pub(crate) wire: Vec<Segment>,
+    /// Mean length of its edges, metres.
+    pub(crate) edge_length: f64,
     /// Size of the curvature that deserves the strongest colour, 1/m.
     pub(crate) curvature_scale: f32,
 }
@@ -215,11 +217,13 @@ fn of_mesh(mesh: &Mesh, material: Option<&Material>, curvature: bool) -> Drawabl
     edges.dedup();
     let at = |vertex: u32| mesh.positions()[vertex as usize].as_vec3().to_array();
     let wire = edges.iter().map(|[a, b]| Segment { from: at(*a), to: at(*b) }).collect();
+    let length = |[a, b]: &[u32; 2]| mesh.positions()[*a as usize].distance(mesh.positions()[*b as usize]);
+    let edge_length = edges.iter().map(length).sum::<f64>() / edges.len().max(1) as f64;
     let mut sizes: Vec<f64> = bent.iter().map(|bent| bent.abs()).collect();
     sizes.sort_by(f64::total_cmp);
     // One wild vertex must not take the colour from all others.
     let scale = sizes.get(sizes.len() * 95 / 100).copied().unwrap_or(1.0).max(1e-6);
-    let surface = Surface { vertices: vertices.collect(), triangles, wire, curvature_scale: scale as f32 };
+    let surface = Surface { vertices: vertices.collect(), triangles, wire, edge_length, curvature_scale: scale as f32 };
     Drawable {
         id: fresh_id(),
         bounds: bounds((0..mesh.corners().len()).map(place)),

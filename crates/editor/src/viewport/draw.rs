@@ -86,11 +86,13 @@ pub(crate) fn picture(context: &PanelContext<'_>, of: &PictureOf<'_>, grid: &Gri
         let is_active = active == Some(shown.node);
         for drawable in &shown.drawables {
             let colour = drawable.colour.unwrap_or(CLAY);
-            if is_drawn && drawable.surface.is_some() {
+            if let Some(surface) = drawable.surface.as_ref().filter(|_| is_drawn) {
+                let wanted = settings.wire && settings.shading != Shading::Zebra;
                 surfaces.push(SurfaceDraw {
                     drawable: drawable.clone(),
                     colour,
-                    wire: (settings.wire && settings.shading != Shading::Zebra).then_some(palette.wire),
+                    wire: faded(palette.wire, surface.edge_length / of.camera.metres_per_point(of.size))
+                        .filter(|_| wanted),
                     mark: if is_active { 0.08 } else { 0.0 },
                 });
             }
@@ -120,6 +122,13 @@ pub(crate) fn picture(context: &PanelContext<'_>, of: &PictureOf<'_>, grid: &Gri
         surfaces,
         lines,
     }
+}
+
+/// The colour of edges that are so many points long on the screen: where they would fill the surface, it is better without.
+#[expect(clippy::cast_possible_truncation, reason = "a share")]
+fn faded([r, g, b, a]: [f32; 4], points: f64) -> Option<[f32; 4]> {
+    let share = ((points - 2.0) / 6.0).clamp(0.0, 1.0) as f32;
+    (share > 0.02).then_some([r, g, b, a * share])
 }
 
 /// The strokes of the graph, straight from the document: they follow the pen without waiting for anything.
