@@ -16,3 +16,4 @@ pub mod scene;
 pub mod sections;
 pub mod surface;
 pub mod trigonometric;
+pub mod view;

@@ -1,11 +1,21 @@
-//! Deforming what generators made.
+//! Deforming what generators and primitives made.
 
+mod align;
 mod contour_matching;
 mod cross_section;
 mod cross_section_error;
 #[cfg(test)]
 mod cross_section_tests;
+mod silhouette;
 
+pub use align::{AlignError, AlignOptions, Aligned, AxisShape, align_primitive};
 pub use contour_matching::Matching;
-pub use cross_section::{Continuity, CrossSectionOptions, Deformed, deform_by_cross_section};
+pub use cross_section::{
+    Continuity, CrossSectionOptions, Deformed, DeformedByAll, RangeBy, Replaced, deform_by_cross_section,
+    deform_by_cross_sections,
+};
 pub use cross_section_error::CrossSectionError;
+pub use silhouette::{
+    Contact, Silhouette, SilhouetteDeformed, SilhouetteDeformer, SilhouetteError, SilhouetteOptions, StrokeMatching,
+    StrokesError, ViewFit, deform_to_silhouette,
+};
