@@ -23,3 +23,5 @@ draw hip hip 480x480
 draw open-strokes open-strokes 480x400 --curves
 "$maquette" wedge graphs/vest.ron --vary body.k_s=0.2..5:4:log --vary shaped.before=0.05,0.17,0.3 --quiet \
     --sheet docs/pictures/wedge.png --tile 240x280
+# Needs a Vulkan driver; Mesa's software one will do (mesa-vulkan-drivers).
+cargo run --release -p maquette-editor --example screenshots -- docs/pictures

@@ -13,6 +13,7 @@ mod neighbours;
 mod output;
 mod placement;
 mod primitive;
+pub mod results;
 mod section;
 mod silhouettes;
 mod stiffness;

@@ -3,6 +3,7 @@
 pub mod adjacency;
 pub mod caps;
 pub mod check;
+pub mod crease;
 pub mod cut;
 pub mod distance;
 pub(crate) mod ear_clipping;
