@@ -10,6 +10,7 @@ pub mod curve;
 pub mod deform;
 pub mod file_format;
 pub mod generate;
+pub mod linear_solver;
 pub mod mesh;
 pub mod primitive;
 pub mod scene;

@@ -1,4 +1,4 @@
-//! Deforming what generators and primitives made.
+//! Deforming what generators and primitives made, and any mesh by handles.
 
 mod align;
 mod contour_matching;
@@ -6,6 +6,7 @@ mod cross_section;
 mod cross_section_error;
 #[cfg(test)]
 mod cross_section_tests;
+pub mod laplacian;
 mod silhouette;
 
 pub use align::{AlignError, AlignOptions, Aligned, AxisShape, align_primitive};

@@ -71,7 +71,10 @@ const ONE_POINT: f64 = 1e-9;
 /// - **Matching.** Point `k` of a column goes to the point of its stroke at the same share of the way
 ///   ([`StrokeMatching`]), to 1e-12 of the sketch. Where the stack is placed along the strokes this holds for bent limbs
 ///   and for strokes that fold back as well.
-/// - **Displacement.** As in the module's first paragraph. A section all of whose targets coincide becomes a pole.
+/// - **Displacement.** Each section is a closed beam; what is solved for is the displacement, so that it keeps its own
+///   shape. Across the stack the pins of a view move it, along the stack those of all views, and along the line of sight
+///   nothing does: a second view leaves the first exact, at once or later. A section all of whose targets coincide becomes
+///   a pole.
 /// - **A view along the stack.** One closed outline in a view that looks along the stack is what the largest section
 ///   becomes; the others follow by the beam along the stack, as with [`super::deform_by_cross_section`].
 ///
