@@ -28,7 +28,9 @@ use maquette_graph::{Catalogue, CatalogueError, NodeKind};
 /// `tests/every_node.rs`.
 fn kinds() -> Vec<NodeKind> {
     vec![
+        curve::beam_reference::kind(),
         curve::boundary_of::kind(),
+        curve::compare_curves::kind(),
         curve::draw_on_surface::kind(),
         curve::join::kind(),
         curve::mirror::kind(),
@@ -37,6 +39,7 @@ fn kinds() -> Vec<NodeKind> {
         curve::smooth::kind(),
         curve::sort::kind(),
         curve::transform::kind(),
+        deform::beam::kind(),
         deform::deform_by_cross_section::kind(),
         generate::blend::kind(),
         generate::detail_generator::kind(),

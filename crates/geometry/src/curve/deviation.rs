@@ -224,7 +224,7 @@ mod tests {
         let even = line(DVec3::ZERO, DVec3::X, 3);
         let uneven = Curve::new("", vec![DVec3::ZERO, DVec3::X * 0.75, DVec3::X], false).unwrap();
         let found = deviation(&even, &uneven, 100, &|_| true).unwrap();
-        assert_eq!((found.nearest.largest, found.arc_length.largest), (0.0, 0.0));
+        assert!(found.nearest.largest < 1e-15 && found.arc_length.largest < 1e-15, "{found:?}");
         let points = found.points.unwrap();
         assert_eq!((points.largest, points.share, points.at), (0.25, 0.5, DVec3::X * 0.5));
         assert!((points.mean - 0.25 / 3.0).abs() < 1e-15);
