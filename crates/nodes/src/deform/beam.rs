@@ -93,7 +93,7 @@ pub(crate) fn kind() -> NodeKind {
         let line = &ports.read(rest).0;
         let mut names = Vec::new();
         let mut held = Vec::new();
-        for entry in entries(ports.read(pins), "pin", "0.5 0 -0.01 0").at(pins)? {
+        for entry in entries(ports.read(pins).as_str(), "pin", "0.5 0 -0.01 0").at(pins)? {
             names.push(format!("pin {}", held.len()));
             held.push(BeamPin { share: entry.share, goal: PinGoal::By(entry.vector.unwrap_or(DVec3::ZERO)) });
         }
@@ -103,7 +103,7 @@ pub(crate) fn kind() -> NodeKind {
             held.push(BeamPin { share, goal: PinGoal::To(arrow.end()) });
         }
         let mut weights = Vec::new();
-        for entry in entries(ports.read(loads), "load", "0.5 0 -1 0").at(loads)? {
+        for entry in entries(ports.read(loads).as_str(), "load", "0.5 0 -1 0").at(loads)? {
             let Some(force) = entry.vector else {
                 return Err("a load has no force: write its three numbers behind the share, such as 0.5 0 -1 0")
                     .at(loads);
