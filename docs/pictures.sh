@@ -21,6 +21,10 @@ draw sea-star sea-star 480x440
 draw forearm forearm 400x480 --wireframe
 draw hip hip 480x480
 draw open-strokes open-strokes 480x400 --curves
+for experiment in cantilever supported tyre; do
+    "$maquette" render "graphs/experiments/$experiment.ron" -o "docs/pictures/$experiment.png" --size 640x400 --quiet \
+        --curves --view front
+done
 "$maquette" wedge graphs/vest.ron --vary body.k_s=0.2..5:4:log --vary shaped.before=0.05,0.17,0.3 --quiet \
     --sheet docs/pictures/wedge.png --tile 240x280
 # Needs a Vulkan driver; Mesa's software one will do (mesa-vulkan-drivers).

@@ -30,7 +30,9 @@ use maquette_graph::{Catalogue, CatalogueError, NodeKind};
 /// `tests/every_node.rs`.
 fn kinds() -> Vec<NodeKind> {
     vec![
+        curve::beam_reference::kind(),
         curve::boundary_of::kind(),
+        curve::compare_curves::kind(),
         curve::draw_on_surface::kind(),
         curve::join::kind(),
         curve::mirror::kind(),
@@ -40,6 +42,7 @@ fn kinds() -> Vec<NodeKind> {
         curve::sort::kind(),
         curve::transform::kind(),
         deform::align_primitive::kind(),
+        deform::beam::kind(),
         deform::deform_by_cross_section::kind(),
         deform::deform_to_silhouette::kind(),
         generate::blend::kind(),

@@ -195,6 +195,7 @@ fn test_catalogue() -> Catalogue {
     catalogue.register(constant("good-curves", wire::Curves(four_rails()))).unwrap();
     let upright = circle("around", 0.5, 0.0).map(|p| DVec3::new(p.x, -p.z, 0.0)).unwrap();
     let over = Curve::new("over", vec![DVec3::splat(0.25), DVec3::splat(0.75)], false).unwrap();
+    catalogue.register(constant("for-beam-rest", wire::Curve(over.clone()))).unwrap();
     catalogue.register(constant("for-draw-on-surface-strokes", wire::Curves(vec![over]))).unwrap();
     catalogue.register(constant("for-cut-with-curve-stroke", wire::Curve(upright))).unwrap();
     let sides = [0.9, -0.9].map(|x| Curve::new("", vec![DVec3::X * x, DVec3::new(x, 2.0, 0.0)], false).unwrap());

@@ -122,6 +122,37 @@ fn deform_by_cross_section() {
 }
 
 #[test]
+fn beam() {
+    let run = |rest: Curve, settings: Vec<(&'static str, Literal)>| Wiring {
+        kind: "beam",
+        links: vec![("rest", constant("line", wire::Curve(rest)))],
+        settings,
+    };
+    let line = || Curve::new("line", vec![DVec3::ZERO, DVec3::X], false).unwrap();
+    let words = |words: &str| Literal::Text(words.to_owned());
+    run(line(), vec![("pins", words("half"))]).blames("pins", "is no pin");
+    run(line(), vec![("pins", words("0.5 1 2"))]).blames("pins", "such as 0.5 0 -0.01 0");
+    run(line(), vec![("pins", words("0.5; 1.5"))]).blames("pins", "pin 1 stands at 1.5");
+    run(line(), vec![("pins", words("0.5; 0.5001"))]).blames("pins", "pins 0 and 1 both fall on node 100");
+    run(line(), vec![("loads", words("0.5"))]).blames("loads", "has no force");
+    run(line(), vec![("loads", words("-1 0 0 1"))]).blames("loads", "load 0 stands at -1");
+    run(line(), vec![("start", text("free")), ("end", text("free"))]).blames("start", "both ends are free");
+    run(ring("ring", 1.0, 0.0), vec![]).blames("pins", "at least one pin");
+    run(ring("ring", 1.0, 0.0), vec![("pins", words("0")), ("intervals", Literal::Integer(4))])
+        .blames("intervals", "at least 5");
+    run(line(), vec![("k_b", Literal::Number(1e-9)), ("k_s", Literal::Number(1e9))]).blames("k_s", "k_s / k_b is");
+}
+
+#[test]
+fn beam_reference() {
+    let run = |settings| Wiring { kind: "beam-reference", links: vec![], settings };
+    let bent_far = || ("case", text("cantilever-elastica"));
+    run(vec![bent_far(), ("displacement", Literal::Number(0.3))]).blames("displacement", "give less");
+    let loaded = ("given", text("load"));
+    run(vec![bent_far(), loaded, ("load", Literal::Number(1e9))]).blames("load", "give less");
+}
+
+#[test]
 fn detail_generator() {
     let run = |rails: wire::Curves, closed: Option<Vec<Curve>>, settings: Vec<(&'static str, Literal)>| Wiring {
         kind: "detail-generator",

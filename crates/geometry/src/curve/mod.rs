@@ -3,6 +3,7 @@
 mod arc_length;
 mod closest;
 mod correspondence;
+mod deviation;
 mod polyline;
 mod resample;
 mod smoothing;
@@ -14,6 +15,7 @@ pub use arc_length::ArcLength;
 pub use closest::{Closest, closest};
 pub use correspondence::{AxisSource, Decision, SortError, SortOptions, Sorted, sort, sort_while};
 pub(crate) use correspondence::{Started, metres, place, start_nearest};
+pub use deviation::{Deviation, DeviationError, Gap, deviation};
 pub use polyline::{Curve, CurveError};
 pub use resample::{Amount, MAX_POINTS, ResampleError, Resampling, resample, resample_while};
 pub(crate) use smoothing::{Ends, NotSolvable, smoothed};

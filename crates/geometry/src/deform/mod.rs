@@ -1,6 +1,9 @@
-//! Deforming what generators and primitives made, and any mesh by handles.
+//! Deforming what generators and primitives made, curves as beams, and any mesh by handles.
 
 mod align;
+mod bend;
+#[cfg(test)]
+mod bend_tests;
 mod contour_matching;
 mod cross_section;
 mod cross_section_error;
@@ -10,6 +13,7 @@ pub mod laplacian;
 mod silhouette;
 
 pub use align::{AlignError, AlignOptions, Aligned, AxisShape, align_primitive};
+pub use bend::{BeamPin, BeamUnits, BendError, Bending, Bent, EndHold, PinGoal, PointLoad, Support, bend};
 pub use contour_matching::Matching;
 pub use cross_section::{
     Continuity, CrossSectionOptions, Deformed, DeformedByAll, RangeBy, Replaced, deform_by_cross_section,

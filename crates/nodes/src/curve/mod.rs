@@ -1,6 +1,8 @@
 //! Nodes that work on curves.
 
+pub(crate) mod beam_reference;
 pub(crate) mod boundary_of;
+pub(crate) mod compare_curves;
 pub(crate) mod draw_on_surface;
 pub(crate) mod join;
 pub(crate) mod mirror;

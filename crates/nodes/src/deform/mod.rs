@@ -4,6 +4,7 @@ use maquette_geometry::deform::StrokeMatching;
 use maquette_graph::Choices;
 
 pub(crate) mod align_primitive;
+pub(crate) mod beam;
 pub(crate) mod deform_by_cross_section;
 pub(crate) mod deform_to_silhouette;
 
