@@ -11,6 +11,7 @@ pub mod deform;
 pub mod file_format;
 pub mod generate;
 pub mod mesh;
+pub mod outline;
 pub mod primitive;
 pub mod scene;
 pub mod sections;
