@@ -29,11 +29,13 @@ use maquette_graph::{Catalogue, CatalogueError, NodeKind};
 fn kinds() -> Vec<NodeKind> {
     vec![
         curve::boundary_of::kind(),
+        curve::clean_strokes::kind(),
         curve::draw_on_surface::kind(),
         curve::join::kind(),
         curve::mirror::kind(),
         curve::pick::kind(),
         curve::resample::kind(),
+        curve::simplify::kind(),
         curve::smooth::kind(),
         curve::sort::kind(),
         curve::transform::kind(),
@@ -44,6 +46,7 @@ fn kinds() -> Vec<NodeKind> {
         input::import_mesh::kind(),
         input::import_skeleton::kind(),
         input::sketch::kind(),
+        input::trace_image::kind(),
         mesh::caps::kind(),
         mesh::cut_with_curve::kind(),
         mesh::cut_with_plane::kind(),
