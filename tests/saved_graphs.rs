@@ -114,16 +114,29 @@ fn every_saved_graph_is_tested_here() {
         .collect();
     assert_eq!(
         saved,
-        ["forearm", "from-image", "from-template", "head", "hip", "human", "leg", "legs", "neck", "open-strokes", "vest"]
-            .map(str::to_owned)
-            .into(),
+        [
+            "forearm",
+            "from-image",
+            "from-template",
+            "head",
+            "hip",
+            "human",
+            "leg",
+            "legs",
+            "neck",
+            "open-strokes",
+            "vest"
+        ]
+        .map(str::to_owned)
+        .into(),
         "add a test for a new graph"
     );
 }
 
 #[test]
 fn no_saved_graph_has_a_node_without_use() {
-    for name in ["vest", "head", "neck", "leg", "legs", "forearm", "from-image", "from-template", "hip", "open-strokes"] {
+    for name in ["vest", "head", "neck", "leg", "legs", "forearm", "from-image", "from-template", "hip", "open-strokes"]
+    {
         let saved = Saved::load(name);
         let used = saved.graph.upstream(&saved.graph.results());
         assert_eq!(used.len(), saved.graph.nodes().len(), "{name}");

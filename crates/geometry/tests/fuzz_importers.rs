@@ -248,8 +248,7 @@ fn picture() -> Subject<'static> {
         bytes.into_inner()
     };
     let opaque = image::DynamicImage::ImageRgba8(disc.clone()).into_rgb8();
-    let corpus =
-        vec![encoded(disc.into(), image::ImageFormat::Png), encoded(opaque.into(), image::ImageFormat::Jpeg)];
+    let corpus = vec![encoded(disc.into(), image::ImageFormat::Png), encoded(opaque.into(), image::ImageFormat::Jpeg)];
     Subject { name: "picture", corpus, dictionary: &PICTURE_WORDS, memory, read: read_picture, allocator: &ALLOCATOR }
 }
 

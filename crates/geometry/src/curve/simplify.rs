@@ -46,11 +46,7 @@ pub fn simplify(curve: &Curve, tolerance: f64) -> Result<Curve, SimplifyError> {
 /// # Errors
 /// [`SimplifyError`] where `tolerance` is negative or not finite, the points that are left fall together, or `progress`
 /// (which is given the share that is done) answers false.
-pub fn simplify_while(
-    curve: &Curve,
-    tolerance: f64,
-    progress: &dyn Fn(f64) -> bool,
-) -> Result<Curve, SimplifyError> {
+pub fn simplify_while(curve: &Curve, tolerance: f64, progress: &dyn Fn(f64) -> bool) -> Result<Curve, SimplifyError> {
     simplified(curve, tolerance, &[], progress)
 }
 
@@ -146,9 +142,10 @@ fn add_cuts(points: &[DVec3], cuts: &mut Vec<usize>) {
     if let [a, b] = cuts[..] {
         let (a, b) = (a.min(b), a.max(b));
         let sides = [farthest(points, a, b), farthest(points, b, a + points.len())];
-        let third = sides.into_iter().flatten().max_by(|x, y| {
-            by_place((x.0, points[x.1 % points.len()]), (y.0, points[y.1 % points.len()]))
-        });
+        let third = sides
+            .into_iter()
+            .flatten()
+            .max_by(|x, y| by_place((x.0, points[x.1 % points.len()]), (y.0, points[y.1 % points.len()])));
         cuts.extend(third.map(|(_, index)| index % points.len()));
     }
 }

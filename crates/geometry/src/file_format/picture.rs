@@ -95,7 +95,8 @@ pub fn read(bytes: &[u8], channel: Channel) -> Result<Mask, PictureError> {
         Channel::Light => rows(&picture, covered),
     };
     let (width, height) = (width as usize, height as usize);
-    Mask::new(width, height, values).map_err(|error| PictureError::Malformed { format: name, problem: error.to_string() })
+    Mask::new(width, height, values)
+        .map_err(|error| PictureError::Malformed { format: name, problem: error.to_string() })
 }
 
 /// A value of 0 to 255 over nothing.
@@ -114,9 +115,7 @@ fn rows(picture: &DynamicImage, value: impl Fn(u8, u8) -> u8) -> Vec<u8> {
         DynamicImage::ImageLuma8(pixels) => pixels.pixels().map(|p| value(p[0], 255)).collect(),
         DynamicImage::ImageLumaA8(pixels) => pixels.pixels().map(|p| value(p[0], p[1])).collect(),
         DynamicImage::ImageRgb8(pixels) => pixels.pixels().map(|p| value(grey(p.0), 255)).collect(),
-        DynamicImage::ImageRgba8(pixels) => {
-            pixels.pixels().map(|p| value(grey([p[0], p[1], p[2]]), p[3])).collect()
-        }
+        DynamicImage::ImageRgba8(pixels) => pixels.pixels().map(|p| value(grey([p[0], p[1], p[2]]), p[3])).collect(),
         DynamicImage::ImageLuma16(pixels) => pixels.pixels().map(|p| value(eight(p[0]), 255)).collect(),
         DynamicImage::ImageLumaA16(pixels) => pixels.pixels().map(|p| value(eight(p[0]), eight(p[1]))).collect(),
         DynamicImage::ImageRgb16(pixels) => pixels.pixels().map(|p| value(grey(p.0.map(eight)), 255)).collect(),

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::corner::{corners, sharpened};
 use super::OutlineError;
+use super::corner::{corners, sharpened};
 use crate::curve::{Curve, simplified, smooth};
 
 /// Shortest arm by which corners are told, pixels: below it the steps of pixels are corners.

@@ -41,12 +41,8 @@ pub fn corners(curve: &Curve, arm: f64, angle: f64) -> Vec<usize> {
             let direct = (stations[index] - stations[*other]).abs();
             if curve.is_closed() { direct.min(length - direct) } else { direct }
         };
-        let neighbours = [
-            kept.range(..index).next_back(),
-            kept.range(index..).next(),
-            kept.iter().next(),
-            kept.iter().next_back(),
-        ];
+        let neighbours =
+            [kept.range(..index).next_back(), kept.range(index..).next(), kept.iter().next(), kept.iter().next_back()];
         if neighbours.into_iter().flatten().all(|other| away(other) >= arm) {
             kept.insert(index);
         }
@@ -61,7 +57,8 @@ pub(super) fn sharpened(curve: &Curve, corner: usize, arm: f64) -> DVec3 {
     let arc = ArcLength::of(curve);
     let (place, station) = (curve.points()[corner], arc.cumulative()[corner]);
     let side = |towards: f64| {
-        let points: Vec<DVec3> = (2..=12).map(|k| arc.point_at(station + towards * arm * f64::from(k) / 12.0)).collect();
+        let points: Vec<DVec3> =
+            (2..=12).map(|k| arc.point_at(station + towards * arm * f64::from(k) / 12.0)).collect();
         Line::through(&points).filter(|line| points.iter().all(|p| line.distance(*p) < STRAIGHT * arm))
     };
     let met = side(-1.0).zip(side(1.0)).and_then(|(one, other)| one.meets(&other));

@@ -182,7 +182,8 @@ impl Grid<'_> {
         let values: Vec<f32> =
             (0..self.height).flat_map(|y| (0..self.width).map(move |x| f32::from(self.at(x, y)))).collect();
         let builder = ContourBuilder::new(self.width, self.height, true);
-        let lines = builder.lines(&values, &[level as f32]).map_err(|error| OutlineError::Library(error.to_string()))?;
+        let lines =
+            builder.lines(&values, &[level as f32]).map_err(|error| OutlineError::Library(error.to_string()))?;
         let (left, bottom) = (self.left as f64, self.mask.height() as f64 - self.top as f64);
         let point = |x: f32, y: f32| DVec2::new(left + f64::from(x), bottom - f64::from(y));
         let rings = lines.into_iter().flat_map(|line| line.into_inner().0.0);

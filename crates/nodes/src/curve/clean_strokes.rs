@@ -22,7 +22,8 @@ pub(crate) fn kind() -> NodeKind {
         "Strokes that run beside each other within this distance are the same line; gaps of this length are bridged.",
     );
     node.soft_range(distance, 0.002..=0.1);
-    let angle = node.angle("angle", 35.0, 0.0..=90.0, "Where strokes run at a larger angle to each other, they only cross.");
+    let angle =
+        node.angle("angle", 35.0, 0.0..=90.0, "Where strokes run at a larger angle to each other, they only cross.");
     let smooth = node.length(
         "smooth",
         0.04,

@@ -36,9 +36,8 @@ pub(crate) fn kind() -> NodeKind {
                 Ok(curve) => curve,
             });
         }
-        let row = |(was, is): (&Curve, &Curve)| {
-            vec![is.name().into(), is.points().len().into(), was.points().len().into()]
-        };
+        let row =
+            |(was, is): (&Curve, &Curve)| vec![is.name().into(), is.points().len().into(), was.points().len().into()];
         ports.table(table, drawn.iter().zip(&left).map(row).collect());
         ports.figure(kept, left.iter().map(|curve| curve.points().len()).sum::<usize>() as f64);
         ports.write(simple, wire::Curves(left));

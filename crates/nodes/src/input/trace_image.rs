@@ -95,7 +95,8 @@ pub(crate) fn kind() -> NodeKind {
         "Bends of this many pixels are halved, so that the steps between pixels go; corners stay. 0 smooths nothing.",
     );
     node.soft_range(smooth, 0.0..=50.0);
-    let corner_angle = node.angle("corner-angle", 45.0, 1.0..=179.0, "Turns by more than this are corners, which stay.");
+    let corner_angle =
+        node.angle("corner-angle", 45.0, 1.0..=179.0, "Turns by more than this are corners, which stay.");
     let tolerance = node.length(
         "tolerance",
         0.0005,
@@ -192,7 +193,7 @@ pub(crate) fn kind() -> NodeKind {
 mod tests {
     use super::*;
     use maquette_graph::Literal;
-    use maquette_graph::harness::Harness;
+    use maquette_graph::harness::{Harness, TrialError};
 
     const SOLE: &[u8] = include_bytes!("../../../../graphs/data/pictures/sole.png");
 
@@ -202,8 +203,10 @@ mod tests {
         for (input, literal) in settings {
             harness = harness.set(input, literal.clone());
         }
-        let error = harness.run().unwrap_err();
-        (error.port().map(str::to_owned), error.to_string())
+        match harness.run().unwrap_err() {
+            TrialError::Failed(failure) => (failure.port, failure.message),
+            stopped => panic!("{stopped}"),
+        }
     }
 
     #[test]

@@ -83,18 +83,14 @@ fn project(
 }
 
 /// The strokes averaged in cells along the line, smoothed, and at even steps.
-fn averaged(
-    strokes: &[&Samples],
-    line: &Line,
-    projected: &[Vec<Projected>],
-    distance: f64,
-    wave: f64,
-) -> Option<Line> {
+fn averaged(strokes: &[&Samples], line: &Line, projected: &[Vec<Projected>], distance: f64, wave: f64) -> Option<Line> {
     let closed = line.is_closed();
     let all = || projected.iter().flatten();
     let (low, high) = match closed {
         true => (0.0, line.length()),
-        false => all().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), foot| (low.min(foot.at), high.max(foot.at))),
+        false => {
+            all().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), foot| (low.min(foot.at), high.max(foot.at)))
+        }
     };
     let span = high - low;
     if !(span.is_finite() && span > 0.0) {
@@ -122,7 +118,8 @@ fn averaged(
     // Ends lie at the mean of the strokes' ends around them, told by the first and the last sample on the line.
     let mut tips = [Vec::new(), Vec::new()];
     for feet in projected {
-        let ends = feet.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), foot| (l.min(foot.at), h.max(foot.at)));
+        let ends =
+            feet.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), foot| (l.min(foot.at), h.max(foot.at)));
         tips[0].push(ends.0 - low);
         tips[1].push(ends.1 - low);
     }

@@ -28,7 +28,8 @@ pub(super) fn groups(
     let empty = Beside::new();
     for ((one, other), forth) in &beside {
         let back = beside.get(&(*other, *one)).unwrap_or(&empty);
-        if one < other && (overlaps(samples, [*one, *other], [forth, back]) || goes_on(samples, [*one, *other], [forth, back]))
+        if one < other
+            && (overlaps(samples, [*one, *other], [forth, back]) || goes_on(samples, [*one, *other], [forth, back]))
         {
             let (a, b) = (root(&leader, *one), root(&leader, *other));
             leader[a.max(b)] = a.min(b);

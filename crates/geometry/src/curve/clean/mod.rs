@@ -77,8 +77,10 @@ pub enum CleanError {
         least: f64,
     },
     /// A line that cannot be fitted.
-    #[error("the strokes with \"{name}\" give no line: they are too short for the distance, or beyond the range of a \
-             double; give a smaller distance")]
+    #[error(
+        "the strokes with \"{name}\" give no line: they are too short for the distance, or beyond the range of a \
+             double; give a smaller distance"
+    )]
     NoLine {
         /// Name of the longest of them.
         name: String,

@@ -59,18 +59,16 @@ fn strokes_over_one_another_become_one_whichever_way_they_run() {
     assert!(found < each / 5.0_f64.sqrt(), "{found} {each}");
     assert!(line.spread > 0.3 * each && line.spread < 1.5 * each && line.largest < 0.03, "{} {each}", line.spread);
     let (first, last) = (line.curve.start(), line.curve.end());
-    let ends = [first.distance(arm(0.0)).min(first.distance(arm(1.0))), last.distance(arm(1.0)).min(last.distance(arm(0.0)))];
+    let ends =
+        [first.distance(arm(0.0)).min(first.distance(arm(1.0))), last.distance(arm(1.0)).min(last.distance(arm(0.0)))];
     assert!(ends.iter().all(|end| *end < 0.01), "{ends:?}");
 }
 
 #[test]
 fn pieces_that_go_on_are_chained_and_a_gap_is_bridged() {
     let piece = |name: &str, range, phase| stroke(name, range, arm, sway(0.004, phase));
-    let pieces = [
-        piece("middle", [0.3, 0.72], 0.0),
-        piece("first", [0.0, 0.4], 1.0).reversed(),
-        piece("last", [0.74, 1.0], 2.0),
-    ];
+    let pieces =
+        [piece("middle", [0.3, 0.8], 0.0), piece("first", [0.0, 0.4], 1.0).reversed(), piece("last", [0.82, 1.0], 2.0)];
     let lines = clean(&pieces, &CLEANING).unwrap();
     assert_eq!(lines.len(), 1, "{lines:?}");
     let length = ArcLength::of(&lines[0].curve).length();
@@ -83,7 +81,8 @@ fn pieces_that_go_on_are_chained_and_a_gap_is_bridged() {
 #[test]
 fn neighbours_crossings_and_branches_stay_apart() {
     let beside = |t: f64| arm(t) + DVec3::Z * 0.08;
-    let lines = clean(&[stroke("a", [0.0, 1.0], arm, still), stroke("b", [0.0, 1.0], beside, still)], &CLEANING).unwrap();
+    let lines =
+        clean(&[stroke("a", [0.0, 1.0], arm, still), stroke("b", [0.0, 1.0], beside, still)], &CLEANING).unwrap();
     assert_eq!(lines.iter().map(|line| line.curve.name()).collect::<Vec<_>>(), ["a", "b"]);
     for (line, wanted) in lines.iter().zip([0.0, 0.08]) {
         assert!(off(&line.curve, |t| arm(t) + DVec3::Z * wanted, false) < 1e-3);
