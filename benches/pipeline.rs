@@ -40,7 +40,7 @@ fn evaluator() -> Evaluator {
 }
 
 fn graphs(c: &mut Criterion) {
-    for name in ["vest", "head", "neck", "leg", "forearm", "hip"] {
+    for name in ["vest", "head", "neck", "leg", "forearm", "hip", "human"] {
         let saved = load(name);
         let results = saved.graph.results();
         c.bench_function(&format!("{name}, cold"), |b| {
@@ -92,38 +92,57 @@ fn vest_changes(c: &mut Criterion) {
 
 /// One section of the forearm pulled, and what depends on it: the fits of the others are not made again.
 fn forearm_changes(c: &mut Criterion) {
-    changing(c, "forearm, one section moved (mark: 5 ms)", edited_forearm(), "forearm", |saved, step| {
-        let node = saved.node("pulled");
-        saved.graph.set(node, "translate", Literal::Vector([0.002 + step, 0.0, 0.0])).expect("in range");
-    });
+    changing(
+        c,
+        "forearm, one section moved (mark: 5 ms)",
+        edited("forearm", ["drawn", "fitted"], &["fit"], 4),
+        "forearm",
+        |saved, step| {
+            let node = saved.node("pulled");
+            saved.graph.set(node, "translate", Literal::Vector([0.002 + step, 0.0, 0.0])).expect("in range");
+        },
+    );
     changing(c, "forearm, all sections fitted to another tolerance", load("forearm"), "forearm", |saved, step| {
         let node = saved.node("fitted");
         saved.graph.set(node, "mean-error", Literal::Number(0.005 + step)).expect("in range");
     });
 }
 
-/// The forearm with its fourth section drawn anew, a little aside.
-fn edited_forearm() -> Saved {
-    let mut saved = load("forearm");
+/// One section of the torso pulled, and the body that depends on it.
+fn human_changes(c: &mut Criterion) {
+    let saved = edited("human", ["torso drawn", "trunk"], &["fit", "hip", "torso", "neck", "head"], 12);
+    changing(c, "human, one section of the torso moved (mark: 5 ms)", saved, "human", |saved, step| {
+        let node = saved.node("pulled");
+        saved.graph.set(node, "translate", Literal::Vector([0.002 + step, 0.0, 0.0])).expect("in range");
+    });
+}
+
+/// A graph with a section drawn anew, a little aside: the fourth of the `drawn` curves at `index` of the `fitted`
+/// sections, for those that `read` them.
+fn edited(name: &str, [drawn, fitted]: [&str; 2], read: &[&str], index: i64) -> Saved {
+    let mut saved = load(name);
     let Saved { catalogue, graph } = &mut saved;
-    let [drawn, fitted, fit] = ["drawn", "fitted", "fit"].map(|name| graph.find(name).expect("the node is there"));
+    let [drawn, fitted] = [drawn, fitted].map(|name| graph.find(name).expect("the node is there"));
+    let read: Vec<NodeId> = read.iter().map(|name| graph.find(name).expect("the node is there")).collect();
     let mut add = |kind: &str, name: &str| graph.add(catalogue, kind, name).expect("the kind is there");
     let [pick, pulled, edit] =
         [("pick", "picked"), ("transform", "pulled"), ("edit-section", "edited")].map(|(kind, name)| add(kind, name));
     graph.set(pick, "which", Literal::Text("4".to_owned())).expect("a text fits");
-    graph.set(edit, "index", Literal::Integer(4)).expect("in range");
+    graph.set(edit, "index", Literal::Integer(index)).expect("in range");
     graph.set(edit, "place", Literal::Choice("as-drawn".to_owned())).expect("an option");
     for (from, output, to, input) in [
         (drawn, "curves", pick, "curves"),
         (pick, "curve", pulled, "curves"),
-        (pulled, "curves", edit, "contour"),
+        (pulled, "curves", edit, "contours"),
         (fitted, "sections", edit, "sections"),
-        (edit, "sections", fit, "sections"),
     ] {
         graph.connect(catalogue, from, output, to, input).expect("the types fit");
+    }
+    for reader in read {
+        graph.connect(catalogue, edit, "sections", reader, "sections").expect("the types fit");
     }
     saved
 }
 
-criterion_group!(benches, graphs, vest_changes, forearm_changes);
+criterion_group!(benches, graphs, vest_changes, forearm_changes, human_changes);
 criterion_main!(benches);

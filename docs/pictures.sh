@@ -14,5 +14,19 @@ draw head head-curves 480x640 --curves --view side
 draw neck neck 560x480 --curves
 draw leg leg 400x640 --curves
 draw legs legs 560x640 --curves
+draw human human 480x720
+draw human human-side 480x720 --view side
+draw leg-deformed leg-deformed 320x560
+draw sea-star sea-star 480x440
+draw forearm forearm 400x480 --wireframe
+draw hip hip 480x480
+draw from-image from-image 480x360
+draw open-strokes open-strokes 480x400 --curves
+for experiment in cantilever supported tyre; do
+    "$maquette" render "graphs/experiments/$experiment.ron" -o "docs/pictures/$experiment.png" --size 640x400 --quiet \
+        --curves --view front
+done
 "$maquette" wedge graphs/vest.ron --vary body.k_s=0.2..5:4:log --vary shaped.before=0.05,0.17,0.3 --quiet \
     --sheet docs/pictures/wedge.png --tile 240x280
+# Needs a Vulkan driver; Mesa's software one will do (mesa-vulkan-drivers).
+cargo run --release -p maquette-editor --example screenshots -- docs/pictures

@@ -44,6 +44,7 @@ fn geometry_and_graph_import_nothing_of_ours_and_nodes_imports_both() {
     assert_eq!(ours("maquette-geometry"), Vec::<String>::new());
     assert_eq!(ours("maquette-graph"), Vec::<String>::new());
     assert_eq!(ours("maquette-nodes"), ["maquette-geometry", "maquette-graph"]);
+    assert_eq!(ours("maquette-editor"), ["maquette-geometry", "maquette-graph", "maquette-nodes"]);
 }
 
 #[test]

@@ -122,9 +122,12 @@ fn every_saved_graph_is_tested_here() {
             "hip",
             "human",
             "leg",
+            "leg-deformed",
             "legs",
             "neck",
             "open-strokes",
+            "sea-star",
+            "torso",
             "vest"
         ]
         .map(str::to_owned)
@@ -135,8 +138,21 @@ fn every_saved_graph_is_tested_here() {
 
 #[test]
 fn no_saved_graph_has_a_node_without_use() {
-    for name in ["vest", "head", "neck", "leg", "legs", "forearm", "from-image", "from-template", "hip", "open-strokes"]
-    {
+    for name in [
+        "vest",
+        "head",
+        "neck",
+        "leg",
+        "legs",
+        "forearm",
+        "from-image",
+        "from-template",
+        "hip",
+        "open-strokes",
+        "leg-deformed",
+        "sea-star",
+        "torso",
+    ] {
         let saved = Saved::load(name);
         let used = saved.graph.upstream(&saved.graph.results());
         assert_eq!(used.len(), saved.graph.nodes().len(), "{name}");

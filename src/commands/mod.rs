@@ -19,7 +19,6 @@ mod progress_bar;
 mod project;
 pub mod render;
 mod report_text;
-mod results;
 pub mod run;
 pub mod verify;
 mod watch;

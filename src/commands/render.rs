@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use super::evaluation::{EvaluationArguments, evaluate};
-use super::{Ended, console, results, write};
+use maquette_nodes::results;
+
+use super::{Ended, console, write};
 use crate::picture::{PictureOptions, View, draw};
 
 /// Evaluate a graph and draw a shaded picture of its results; needs neither GPU nor display.

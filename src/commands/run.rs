@@ -13,7 +13,8 @@ use super::evaluation::{Evaluated, EvaluationArguments, Keep, Opened, evaluator,
 use super::fail_if::{self, Limit};
 use super::graph_file::GraphFile;
 use super::hashes::{self, Hashes};
-use super::{Ended, console, report_text, results, watch, write};
+use super::{Ended, console, report_text, watch, write};
+use maquette_nodes::results;
 
 /// Evaluate a graph and write its results.
 #[derive(clap::Args)]

@@ -2,8 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use maquette_geometry::curve::Curve;
-use maquette_geometry::file_format::{FileFormat, curves_json, gltf_write, obj, ply};
+use maquette_geometry::file_format::{EncodeError, FileFormat, encode};
 use maquette_geometry::scene::Scene;
 use maquette_graph::{WireType, file};
 use maquette_nodes::wire;
@@ -52,27 +51,8 @@ pub(super) fn make_folder_of(path: &Path) -> Result<(), String> {
 
 /// The files that a scene makes, and what goes into them.
 pub(super) fn encoded(path: &Path, format: FileFormat, scene: &Scene) -> Result<Vec<(PathBuf, Vec<u8>)>, String> {
-    let fail = |error: String| format!("{}: {error}", path.display());
-    let mut files = Vec::new();
-    match format {
-        FileFormat::Glb => files.push((path.to_owned(), gltf_write::glb(scene).map_err(|e| fail(e.to_string()))?)),
-        FileFormat::Gltf => files.push((path.to_owned(), gltf_write::gltf(scene).map_err(|e| fail(e.to_string()))?)),
-        FileFormat::Ply => files.push((path.to_owned(), ply::write(scene).map_err(|e| fail(e.to_string()))?)),
-        FileFormat::Obj => {
-            let library = path.with_extension("mtl");
-            let library_name = library.file_name().map(|n| n.to_string_lossy().into_owned());
-            let model = obj::write(scene, library_name.as_deref()).map_err(|e| fail(e.to_string()))?;
-            let materials = obj::material_library_bytes(scene).map_err(|e| fail(e.to_string()))?;
-            files.push((path.to_owned(), model));
-            files.push((library, materials));
-        }
-        FileFormat::Json => {
-            let curves: Vec<Curve> = scene.curves.iter().flat_map(|item| item.curves.iter().cloned()).collect();
-            files.push((path.to_owned(), curves_json::write(&curves)));
-        }
-        FileFormat::Svg => return Err(fail("SVG is read, not written".to_owned())),
-    }
-    Ok(files)
+    let fail = |error: EncodeError| format!("{}: {error}", path.display());
+    encode(path, format, scene).map_err(fail)
 }
 
 /// Replaces a file that is there. One that is protected against writing is left as it is.

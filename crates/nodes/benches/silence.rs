@@ -174,12 +174,12 @@ fn shapes(c: &mut Criterion) {
             .set("snap", Literal::Number(1.0))
     });
     let stack = Value::new(sections(512, 512));
-    let waist = Value::new(wire::Curve(curve("waist", POINTS, true, 0.8, 1.0)));
+    let waist = Value::new(wire::Curves(vec![curve("waist", POINTS, true, 0.8, 1.0)]));
     let deform = kind(&catalogue, "deform-by-cross-section");
     measure(c, "deform-by-cross-section: 512 x 512, a contour of 65,536", || {
         Harness::new(deform)
             .give_value("sections", stack.clone())
-            .give_value("contour", waist.clone())
+            .give_value("contours", waist.clone())
             .set("before", Literal::Number(1.0))
             .set("after", Literal::Number(1.0))
     });

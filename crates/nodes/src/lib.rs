@@ -13,7 +13,9 @@ mod neighbours;
 mod output;
 mod placement;
 mod primitive;
+pub mod results;
 mod section;
+mod silhouettes;
 mod stiffness;
 mod surface;
 mod surfacing;
@@ -28,8 +30,10 @@ use maquette_graph::{Catalogue, CatalogueError, NodeKind};
 /// `tests/every_node.rs`.
 fn kinds() -> Vec<NodeKind> {
     vec![
+        curve::beam_reference::kind(),
         curve::boundary_of::kind(),
         curve::clean_strokes::kind(),
+        curve::compare_curves::kind(),
         curve::draw_on_surface::kind(),
         curve::join::kind(),
         curve::mirror::kind(),
@@ -39,7 +43,10 @@ fn kinds() -> Vec<NodeKind> {
         curve::smooth::kind(),
         curve::sort::kind(),
         curve::transform::kind(),
+        deform::align_primitive::kind(),
+        deform::beam::kind(),
         deform::deform_by_cross_section::kind(),
+        deform::deform_to_silhouette::kind(),
         generate::blend::kind(),
         generate::detail_generator::kind(),
         input::import_curves::kind(),
@@ -53,6 +60,8 @@ fn kinds() -> Vec<NodeKind> {
         mesh::join_meshes::kind(),
         mesh::join_parts::kind(),
         mesh::mirror_mesh::kind(),
+        mesh::silhouette_of::kind(),
+        mesh::silhouette_report::kind(),
         mesh::transform_mesh::kind(),
         output::curves_out::kind(),
         output::mesh_out::kind(),

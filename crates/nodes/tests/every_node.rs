@@ -195,8 +195,15 @@ fn test_catalogue() -> Catalogue {
     catalogue.register(constant("good-curves", wire::Curves(four_rails()))).unwrap();
     let upright = circle("around", 0.5, 0.0).map(|p| DVec3::new(p.x, -p.z, 0.0)).unwrap();
     let over = Curve::new("over", vec![DVec3::splat(0.25), DVec3::splat(0.75)], false).unwrap();
+    catalogue.register(constant("for-beam-rest", wire::Curve(over.clone()))).unwrap();
     catalogue.register(constant("for-draw-on-surface-strokes", wire::Curves(vec![over]))).unwrap();
     catalogue.register(constant("for-cut-with-curve-stroke", wire::Curve(upright))).unwrap();
+    let sides = [0.9, -0.9].map(|x| Curve::new("", vec![DVec3::X * x, DVec3::new(x, 2.0, 0.0)], false).unwrap());
+    for kind in ["align-primitive", "deform-to-silhouette", "silhouette-report"] {
+        catalogue.register(constant(&format!("for-{kind}-front"), wire::Curves(sides.to_vec()))).unwrap();
+    }
+    let ring = wire::Curves(vec![circle("ring", 1.2, 1.25)]);
+    catalogue.register(constant("for-deform-by-cross-section-contours", ring)).unwrap();
     catalogue.register(constant("good-curve", wire::Curve(circle("ring", 1.2, 1.25)))).unwrap();
     catalogue.register(constant("good-sections", wire::Sections(tube()))).unwrap();
     catalogue.register(constant("good-mesh", wire::Mesh::new(square()))).unwrap();
@@ -230,6 +237,7 @@ fn wanted(kind: &str, input: &str) -> bool {
         // One surface twice makes no chain.
         "join-surfaces" => input == "a",
         "edit-section" => input == "contour",
+        "align-primitive" | "deform-to-silhouette" | "silhouette-report" => input == "front",
         kind => kind.starts_with("join"),
     }
 }

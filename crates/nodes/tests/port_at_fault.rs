@@ -105,7 +105,10 @@ fn text(value: &str) -> Literal {
 fn deform_by_cross_section() {
     let run = |stack: wire::Sections, contour: Curve, settings: Vec<(&'static str, Literal)>| Wiring {
         kind: "deform-by-cross-section",
-        links: vec![("sections", constant("stack", stack)), ("contour", constant("drawn", wire::Curve(contour)))],
+        links: vec![
+            ("sections", constant("stack", stack)),
+            ("contours", constant("drawn", wire::Curves(vec![contour]))),
+        ],
         settings,
     };
     let number = Literal::Number;
@@ -115,7 +118,38 @@ fn deform_by_cross_section() {
         .blames("after", "after section 5");
     run(sections(11, false), contour(), vec![]).blames("sections", "sections are open");
     run(sections(4, true), contour(), vec![]).blames("sections", "at least 5");
-    run(sections(11, true), ring("far", 1.0, 50.0), vec![]).blames("contour", "onto the surface");
+    run(sections(11, true), ring("far", 1.0, 50.0), vec![]).blames("contours", "onto the surface");
+}
+
+#[test]
+fn beam() {
+    let run = |rest: Curve, settings: Vec<(&'static str, Literal)>| Wiring {
+        kind: "beam",
+        links: vec![("rest", constant("line", wire::Curve(rest)))],
+        settings,
+    };
+    let line = || Curve::new("line", vec![DVec3::ZERO, DVec3::X], false).unwrap();
+    let words = |words: &str| Literal::Text(words.to_owned());
+    run(line(), vec![("pins", words("half"))]).blames("pins", "is no pin");
+    run(line(), vec![("pins", words("0.5 1 2"))]).blames("pins", "such as 0.5 0 -0.01 0");
+    run(line(), vec![("pins", words("0.5; 1.5"))]).blames("pins", "pin 1 stands at 1.5");
+    run(line(), vec![("pins", words("0.5; 0.5001"))]).blames("pins", "pins 0 and 1 both fall on node 100");
+    run(line(), vec![("loads", words("0.5"))]).blames("loads", "has no force");
+    run(line(), vec![("loads", words("-1 0 0 1"))]).blames("loads", "load 0 stands at -1");
+    run(line(), vec![("start", text("free")), ("end", text("free"))]).blames("start", "both ends are free");
+    run(ring("ring", 1.0, 0.0), vec![]).blames("pins", "at least one pin");
+    run(ring("ring", 1.0, 0.0), vec![("pins", words("0")), ("intervals", Literal::Integer(4))])
+        .blames("intervals", "at least 5");
+    run(line(), vec![("k_b", Literal::Number(1e-9)), ("k_s", Literal::Number(1e9))]).blames("k_s", "k_s / k_b is");
+}
+
+#[test]
+fn beam_reference() {
+    let run = |settings| Wiring { kind: "beam-reference", links: vec![], settings };
+    let bent_far = || ("case", text("cantilever-elastica"));
+    run(vec![bent_far(), ("displacement", Literal::Number(0.3))]).blames("displacement", "give less");
+    let loaded = ("given", text("load"));
+    run(vec![bent_far(), loaded, ("load", Literal::Number(1e9))]).blames("load", "give less");
 }
 
 #[test]
@@ -293,6 +327,43 @@ fn tessellate() {
     assert!(report.figure("deviation").is_none() && report.figure("faces").unwrap().value == 2048.0);
     let report = run(parts(&[0.0, 1.0], &[1.0, 2.0]), vec![]).run().unwrap();
     assert!(report.figure("deviation").unwrap().value > 1e-4);
+}
+
+#[test]
+fn silhouettes() {
+    let strokes = |name: &str, half: f64, lean: f64| {
+        let side = |s: f64| {
+            let points = (0..=10).map(|k| DVec3::new(s * half + lean * f64::from(k), 0.1 * f64::from(k), 0.0));
+            Curve::new(name, points.collect(), false).unwrap()
+        };
+        wire::Curves(vec![side(1.0), side(-1.0)])
+    };
+    let run = |kind: &'static str, view: &'static str, stack: wire::Sections, drawn: wire::Curves| Wiring {
+        kind,
+        links: vec![("sections", constant("stack", stack)), (view, constant("drawn", drawn))],
+        settings: vec![],
+    };
+    for kind in ["align-primitive", "deform-to-silhouette"] {
+        let links = vec![("sections", constant("stack", sections(11, true)))];
+        let none = Wiring { kind, links, settings: vec![] }.run().unwrap_err();
+        assert!(none.0.is_none() && none.1.contains("no strokes are connected"), "{none:?}");
+        let crossing =
+            wire::Curves(vec![strokes("one", 0.1, 0.03).0[1].clone(), strokes("other", 0.1, -0.005).0[0].clone()]);
+        run(kind, "front", sections(11, true), crossing).blames("front", "cross at");
+        run(kind, "side", sections(11, true), strokes("flat", 0.5, 0.0))
+            .blames("side", "enclose no area in the side view");
+    }
+    let align =
+        |settings| Wiring { settings, ..run("align-primitive", "front", sections(11, true), strokes("", 0.5, 0.0)) };
+    align(vec![("scale", Literal::Vector([1.0, 0.0, 1.0]))]).blames("scale", "above 0");
+    assert!(align(vec![("taper", Literal::Number(1.0)), ("axis", text("straight"))]).run().is_ok());
+    let deform = |stack, drawn| run("deform-to-silhouette", "front", stack, drawn);
+    deform(sections(11, false), strokes("", 0.5, 0.0)).blames("sections", "sections are open");
+    let far = strokes("far", 0.5, 0.0).0.iter().map(|c| c.map(|p| p + DVec3::X * 9.0).unwrap()).collect();
+    deform(sections(11, true), wire::Curves(far)).blames("front", "7.5000 m beside the sections");
+    run("deform-to-silhouette", "top", sections(11, true), strokes("two", 0.5, 0.0)).blames("top", "one closed stroke");
+    let report = deform(sections(11, true), strokes("", 0.5, 0.0)).run().unwrap();
+    assert!(report.figure("largest-move").unwrap().value > 0.49 && report.warnings.is_empty());
 }
 
 #[test]

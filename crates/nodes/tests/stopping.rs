@@ -117,10 +117,23 @@ fn nodes_on_shapes() {
     let stack = wire::Sections(Sections::new((0..100).map(row).collect(), true, vec![]).unwrap());
     stops(&catalogue, "deform-by-cross-section", 40, |h| {
         h.give("sections", stack.clone())
-            .give("contour", wire::Curve(ring("waist", 100, 0.8, 1.0)))
+            .give("contours", wire::Curves(vec![ring("waist", 100, 0.8, 1.0)]))
             .set("before", Literal::Number(0.5))
             .set("after", Literal::Number(0.5))
     });
+    let strokes = |view: usize| {
+        let at = |side: f64, k: usize| {
+            let (out, y) = (side * 0.8, 1.98 * k as f64 / 99.0);
+            if view == 0 { DVec3::new(out, y, 0.0) } else { DVec3::new(0.0, y, out) }
+        };
+        let sides = [1.0, -1.0].map(|side| Curve::new("", (0..100).map(|k| at(side, k)).collect(), false).unwrap());
+        wire::Curves(sides.into())
+    };
+    for kind in ["align-primitive", "deform-to-silhouette"] {
+        stops(&catalogue, kind, 100, |h| {
+            h.give("sections", stack.clone()).give("front", strokes(0)).give("side", strokes(1))
+        });
+    }
     let rings = wire::Curves((0..100).map(|k| ring("", 100, 1.0, 0.02 * (k * 37 % 100) as f64)).collect());
     stops(&catalogue, "order-sections", 300, |h| h.give("curves", rings.clone()));
     stops(&catalogue, "primitive-shape", 2, |h| h.set("sections", Literal::Integer(100)));
@@ -134,6 +147,10 @@ fn nodes_on_shapes() {
 #[test]
 fn nodes_on_meshes() {
     let catalogue = maquette_nodes::catalogue().unwrap();
+    let flat = wire::Mesh::new(net(200));
+    stops(&catalogue, "silhouette-of", 6, |h| h.give("mesh", flat.clone()).set("view", Literal::Choice("top".into())));
+    let border = wire::Curves(vec![ring("", 300, 90.0, 0.0)]);
+    stops(&catalogue, "silhouette-report", 8, |h| h.give("mesh", flat.clone()).give("top", border.clone()));
     let mesh = net(400);
     let text = obj(&mesh);
     stops(&catalogue, "import-mesh", text.len() >> 19, |h| h.file("file", "a.obj", text.clone()));

@@ -13,7 +13,8 @@ use super::row::{FileRow, Row, State};
 use crate::commands::evaluation::{evaluator, messages};
 use crate::commands::fail_if::{self, Verdict};
 use crate::commands::progress_bar::Variants as Bar;
-use crate::commands::{console, results, write};
+use crate::commands::{console, write};
+use maquette_nodes::results;
 
 /// A wedge at work.
 pub(super) struct Runner<'a> {

@@ -8,6 +8,7 @@
 //!
 //! [`ClosedBeam`] and [`OpenBeam`] stand on one system of equations: pins, and ends that are clamped, natural or free.
 //! [`OpenCardinals`] are the functions of which all their curves are sums; [`TensionSpline`] is the exact solution.
+//! [`theory`] says how real beams bend, to measure the equation against.
 
 mod banded;
 mod cardinals;
@@ -21,6 +22,7 @@ mod quantity;
 mod stiffness;
 mod system;
 mod tension_spline;
+pub mod theory;
 
 pub(crate) use banded::BandedFactor;
 pub use cardinals::OpenCardinals;

@@ -40,6 +40,9 @@ impl Stiffness {
     /// Largest `k_s / k_b` permitted: beyond it the curve is a string to within one part in a million.
     pub const LARGEST_RATIO: f64 = 1e12;
 
+    /// The thesis' choice, `k_b = 0.5` and `k_s = 1.4`.
+    pub const THESIS: Self = Self { k_b: 0.5, k_s: 1.4 };
+
     /// Makes a stiffness.
     ///
     /// # Errors
@@ -76,9 +79,9 @@ impl Stiffness {
 }
 
 impl Default for Stiffness {
-    /// The thesis' choice, `k_b = 0.5` and `k_s = 1.4`.
+    /// [`Stiffness::THESIS`].
     fn default() -> Self {
-        Self { k_b: 0.5, k_s: 1.4 }
+        Self::THESIS
     }
 }
 

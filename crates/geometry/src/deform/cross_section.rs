@@ -19,14 +19,26 @@ pub enum Continuity {
     PositionAndTangent,
 }
 
+/// How an influence range is measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum RangeBy {
+    /// In metres along the stack, by the mean length of the columns.
+    #[default]
+    Distance,
+    /// In sections: the number from the replaced one to the end of the range, rounded.
+    Sections,
+}
+
 /// How a contour deforms a stack of sections.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CrossSectionOptions {
     /// Stiffness of the displacement.
     pub stiffness: Stiffness,
-    /// Influence range before the replaced section, metres along the stack; clipped to it.
+    /// How `before` and `after` are measured.
+    pub range: RangeBy,
+    /// Influence range before the replaced section, metres or sections along the stack; clipped to it.
     pub before: f64,
-    /// Influence range after the replaced section, metres along the stack; clipped to it.
+    /// Influence range after the replaced section, metres or sections along the stack; clipped to it.
     pub after: f64,
     /// How the deformed part meets the rest.
     pub continuity: Continuity,
@@ -39,6 +51,7 @@ impl Default for CrossSectionOptions {
     fn default() -> Self {
         Self {
             stiffness: Stiffness::default(),
+            range: RangeBy::default(),
             before: 0.2,
             after: 0.2,
             continuity: Continuity::default(),
@@ -64,6 +77,30 @@ pub struct Deformed {
     pub notes: Vec<String>,
 }
 
+/// What several contours made of a stack of sections.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeformedByAll {
+    /// The sections, with the rails of the original.
+    pub sections: Sections,
+    /// What each contour replaced, in the order of the contours.
+    pub replaced: Vec<Replaced>,
+    /// How far the point moved that moved farthest, metres.
+    pub largest_move: f64,
+    /// What was decided or adjusted on the way, one sentence each, for the artist.
+    pub notes: Vec<String>,
+}
+
+/// What a contour replaced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Replaced {
+    /// Its section, counted from 0.
+    pub section: usize,
+    /// First section of its influence range.
+    pub first: usize,
+    /// Last section of its influence range.
+    pub last: usize,
+}
+
 /// Replaces the section closest to a closed contour by the contour, and lets the sections around it follow (thesis 5.5,
 /// Figure 5.7).
 ///
@@ -71,8 +108,8 @@ pub struct Deformed {
 /// section and no pole) is pinned to it. Each of its points goes to a point of the contour's polyline ([`Matching`]); it
 /// does not matter where the contour starts, nor which way it runs. The displacement of each column solves the beam
 /// equation over the sections of the range, `u` uniform from one to the next; as displacements are solved and not
-/// positions, the sections keep their detail. The range ends at the last section within `before` and `after` metres,
-/// measured along the stack by the mean length of the columns.
+/// positions, the sections keep their detail. The range ends at the last section within `before` and `after`
+/// ([`RangeBy`]).
 ///
 /// # Errors
 /// [`CrossSectionError`] for an open contour or open sections, a range without a free section on each side of the
@@ -85,44 +122,107 @@ pub fn deform_by_cross_section(
     options: &CrossSectionOptions,
     progress: &dyn Fn(f64) -> bool,
 ) -> Result<Deformed, CrossSectionError> {
-    check(sections, contour, options)?;
+    let made = deform_by_cross_sections(sections, std::slice::from_ref(contour), options, progress)?;
+    let Replaced { section, first, last } = made.replaced[0];
+    let DeformedByAll { sections, largest_move, notes, .. } = made;
+    Ok(Deformed { sections, section, first, last, largest_move, notes })
+}
+
+/// Replaces several sections by closed contours at once, as [`deform_by_cross_section`] does by one.
+///
+/// Each contour finds its section in the stack as it was. Where influence ranges overlap, the sections between follow all
+/// contours in them: one beam runs from the first to the last section of their ranges and is pinned at each. The order of
+/// the contours does not matter.
+///
+/// # Errors
+/// As [`deform_by_cross_section`], and for no contour, and for two contours closest to one section.
+pub fn deform_by_cross_sections(
+    sections: &Sections,
+    contours: &[Curve],
+    options: &CrossSectionOptions,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<DeformedByAll, CrossSectionError> {
+    if contours.is_empty() {
+        return Err(CrossSectionError::NoContour);
+    }
     let go_on = |done: usize, of: usize| match progress(done as f64 / of as f64) {
         true => Ok(()),
         false => Err(CrossSectionError::Cancelled),
     };
     let mut notes = Vec::new();
     go_on(0, 1)?;
-    let section = find_section(sections, contour, &mut notes)?;
-    go_on(0, 1)?;
-    let (first, last) = range(sections, contour, section, options, &mut notes)?;
-    go_on(0, 1)?;
-    let targets = matched(sections, contour, section, options.matching, &mut notes)?;
-
+    let mut replaced = Vec::with_capacity(contours.len());
+    let mut targets = Vec::with_capacity(contours.len());
+    for contour in contours {
+        check(sections, contour, options)?;
+        let section = find_section(sections, contour, &mut notes)?;
+        go_on(0, 1)?;
+        let (first, last) = range(sections, contour, section, options, &mut notes)?;
+        go_on(0, 1)?;
+        targets.push(matched(sections, contour, section, options.matching, &mut notes)?);
+        replaced.push(Replaced { section, first, last });
+    }
+    let mut order: Vec<usize> = (0..contours.len()).collect();
+    order.sort_by_key(|contour| replaced[*contour].section);
+    if let Some(pair) = order.windows(2).find(|pair| replaced[pair[0]].section == replaced[pair[1]].section) {
+        let (one, other) = (pair[0].min(pair[1]), pair[0].max(pair[1]));
+        let name = |contour: usize| contours[contour].name().to_owned();
+        let section = replaced[one].section;
+        return Err(CrossSectionError::SameSection { one: name(one), other: name(other), section });
+    }
+    // Contours whose ranges overlap share a beam.
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    let mut reach = 0;
+    for contour in order {
+        match groups.last_mut() {
+            Some(group) if replaced[contour].first < reach => group.push(contour),
+            _ => groups.push(vec![contour]),
+        }
+        reach = reach.max(replaced[contour].last);
+    }
     let end = match options.continuity {
         Continuity::Position => EndCondition::Natural,
         Continuity::PositionAndTangent => EndCondition::Clamped,
     };
-    let beam = OpenBeam::new(last - first + 1, &[section - first], end, end, options.stiffness)?;
-    // All columns share one solution, that for a displacement of 1.
-    let shares = beam.solve(&OpenValues { pins: &[1.0], ..OpenValues::ends(0.0, 0.0) })?;
     let mut rows: Vec<Vec<DVec3>> = sections.iter().map(<[DVec3]>::to_vec).collect();
-    let replaced = sections.section(section);
-    // Each row moves by one share of what the replaced section moves by.
-    let moves = targets.iter().zip(replaced).map(|(target, from)| target.distance(*from));
-    let largest_share = shares.iter().copied().fold(0.0, |a: f64, b| a.max(b.abs()));
-    let largest_move = largest_share * moves.fold(0.0, f64::max);
-    for (done, (row, share)) in rows[first..=last].iter_mut().zip(&shares).enumerate() {
-        go_on(done, shares.len())?;
-        for ((point, target), from) in row.iter_mut().zip(&targets).zip(replaced) {
-            *point += (*target - *from) * *share;
+    let mut largest = 0.0_f64;
+    let span = |group: &[usize]| {
+        let first = group.iter().map(|contour| replaced[*contour].first).min().unwrap_or(0);
+        (first, group.iter().map(|contour| replaced[*contour].last).max().unwrap_or(first))
+    };
+    let steps: usize = groups.iter().map(|group| (span(group).1 - span(group).0 + 1) * group.len()).sum();
+    let mut done = 0;
+    for group in groups {
+        let (first, last) = span(&group);
+        let pins: Vec<usize> = group.iter().map(|contour| replaced[*contour].section - first).collect();
+        let beam = OpenBeam::new(last - first + 1, &pins, end, end, options.stiffness)?;
+        for (place, contour) in group.iter().enumerate() {
+            // All columns share one solution, that for a displacement of 1.
+            let mut unit = vec![0.0; pins.len()];
+            unit[place] = 1.0;
+            let shares = beam.solve(&OpenValues { pins: &unit, ..OpenValues::ends(0.0, 0.0) })?;
+            let from = sections.section(replaced[*contour].section);
+            for (row, share) in rows[first..=last].iter_mut().zip(&shares) {
+                go_on(done, steps)?;
+                done += 1;
+                for ((point, target), from) in row.iter_mut().zip(&targets[*contour]).zip(from) {
+                    *point += (*target - *from) * *share;
+                }
+            }
+        }
+        for fixed in [first, last] {
+            rows[fixed].copy_from_slice(sections.section(fixed));
+        }
+        for contour in &group {
+            rows[replaced[*contour].section].clone_from(&targets[*contour]);
         }
     }
-    for fixed in [first, last] {
-        rows[fixed].copy_from_slice(sections.section(fixed));
+    for (row, section) in rows.iter().zip(sections.iter()) {
+        let moves = row.iter().zip(section).map(|(to, from)| to.distance(*from));
+        largest = largest.max(moves.fold(0.0, f64::max));
     }
-    rows[section] = targets;
     let deformed = Sections::new(rows, true, sections.rails().to_vec())?;
-    Ok(Deformed { sections: deformed, section, first, last, largest_move, notes })
+    Ok(DeformedByAll { sections: deformed, replaced, largest_move: largest, notes })
 }
 
 fn check(sections: &Sections, contour: &Curve, options: &CrossSectionOptions) -> Result<(), CrossSectionError> {
@@ -196,27 +296,41 @@ fn range(
         }
     }
     let mut heights = vec![0.0];
-    for k in 1..=end {
+    if options.range == RangeBy::Sections {
+        heights = (0..=end).map(|k| k as f64).collect();
+    }
+    for k in heights.len()..=end {
         let steps = sections.section(k).iter().zip(sections.section(k - 1));
         let step = steps.map(|(p, q)| p.distance(*q)).sum::<f64>() / sections.nodes() as f64;
         heights.push(heights[k - 1] + step);
     }
     let apart = |k: usize| (heights[k] - heights[section]).abs();
     // A reach given as the exact distance of a section includes it in spite of rounding.
-    let within = |k: usize, reach: f64| apart(k) <= reach * (1.0 + 1e-9);
+    let within = |k: usize, reach: f64| match options.range {
+        RangeBy::Distance => apart(k) <= reach * (1.0 + 1e-9),
+        RangeBy::Sections => apart(k) <= reach.round(),
+    };
     let first = (0..section).find(|k| within(*k, options.before)).unwrap_or(section);
     let last = (section + 1..=end).rfind(|k| within(*k, options.after)).unwrap_or(section);
     for (which, room, second) in [("before", section - first, section - 2), ("after", last - section, section + 2)] {
         if room < 2 {
-            return Err(CrossSectionError::RangeTooSmall { which, section, needed: apart(second) });
+            let needed = apart(second);
+            return Err(match options.range {
+                RangeBy::Distance => CrossSectionError::RangeTooSmall { which, section, needed },
+                RangeBy::Sections => CrossSectionError::TooFewInRange { which, section },
+            });
         }
     }
+    let unit = match options.range {
+        RangeBy::Distance => "m",
+        RangeBy::Sections => "sections",
+    };
     for (which, border, reach) in [("before", 0, options.before), ("after", end, options.after)] {
         if apart(border) < reach * (1.0 - 1e-9) {
             notes.push(format!(
-                "The influence range {which} section {section} is {reach} m, but the stack ends after {:.4} m: it is \
+                "The influence range {which} section {section} is {reach} {unit}, but the stack ends after {} {unit}: it is \
                  cut off there.",
-                apart(border)
+                (apart(border) * 1e4).round() / 1e4
             ));
         }
     }

@@ -6,6 +6,22 @@ use crate::sections::SectionsError;
 /// Why a contour cannot deform a stack of sections.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum CrossSectionError {
+    /// No contour at all.
+    #[error("no contour arrives: give at least one closed curve")]
+    NoContour,
+    /// Two contours for one section.
+    #[error(
+        "contours \"{one}\" and \"{other}\" are both closest to section {section}, which can take the shape of one only: \
+         move them apart, or generate more sections"
+    )]
+    SameSection {
+        /// Name of the first contour.
+        one: String,
+        /// Name of the second.
+        other: String,
+        /// The section, counted from 0.
+        section: usize,
+    },
     /// A contour that does not close.
     #[error("contour \"{contour}\" is open: close it, a cross-section goes all the way around")]
     ContourIsOpen {
@@ -25,7 +41,7 @@ pub enum CrossSectionError {
         found: usize,
     },
     /// An influence range that is not a distance.
-    #[error("the influence range {which} the contour is {reach}: it must be a finite number of metres, 0 or above")]
+    #[error("the influence range {which} the contour is {reach}: it must be a finite number, 0 or above")]
     Reach {
         /// `before` or `after`.
         which: &'static str,
@@ -86,6 +102,17 @@ pub enum CrossSectionError {
         section: usize,
         /// Least reach, metres.
         needed: f64,
+    },
+    /// No free section between the replaced one and the end of a range counted in sections.
+    #[error(
+        "the influence range {which} section {section}, which the contour replaces, is fewer than 2 sections, so that \
+         none is free in it: set it to 2 or more"
+    )]
+    TooFewInRange {
+        /// `before` or `after`.
+        which: &'static str,
+        /// Index of the replaced section, counted from 0.
+        section: usize,
     },
     /// A contour right beside the end of the stack.
     #[error(

@@ -280,3 +280,51 @@ fn progress_rises_and_cancels_and_the_largest_move_is_told() {
     let stopped = deform_by_cross_section(&sections, &contour, &options(0.3), &|done| done < 0.5);
     assert_eq!(stopped.unwrap_err(), CrossSectionError::Cancelled);
 }
+
+#[test]
+fn a_range_counted_in_sections_is_that_many() {
+    let tube = tube(11);
+    let counted = CrossSectionOptions { range: RangeBy::Sections, before: 3.0, after: 2.0, ..options(0.0) };
+    let made = apply(&tube, &contour(0.42, pear), &counted);
+    assert_eq!((made.section, made.first, made.last), (4, 1, 6));
+    let metres = CrossSectionOptions { before: 0.31, after: 0.21, ..options(0.0) };
+    assert_eq!(made.sections, apply(&tube, &contour(0.42, pear), &metres).sections);
+    let short = CrossSectionOptions { after: 1.0, ..counted };
+    let error = deform_by_cross_section(&tube, &contour(0.42, pear), &short, &|_| true).unwrap_err();
+    assert_eq!(error, CrossSectionError::TooFewInRange { which: "after", section: 4 });
+    let far = apply(&tube, &contour(0.42, pear), &CrossSectionOptions { after: 50.0, ..counted });
+    assert!(far.last == 10 && far.notes[0].contains("is 50 sections, but the stack ends after 6 sections"));
+}
+
+#[test]
+fn several_contours_are_exact_at_once_and_share_what_lies_between() {
+    let tube = tube(21);
+    let (low, high, far) = (contour(0.5, pear), contour(0.9, |_| 0.15), contour(1.6, |_| 0.3));
+    let go = |contours: &[Curve], options: &CrossSectionOptions| {
+        deform_by_cross_sections(&tube, contours, options, &|_| true).unwrap()
+    };
+    for continuity in [Continuity::Position, Continuity::PositionAndTangent] {
+        let options = CrossSectionOptions { continuity, ..options(0.31) };
+        let made = go(&[far.clone(), low.clone(), high.clone()], &options);
+        let found: Vec<_> = made.replaced.iter().map(|r| (r.section, r.first, r.last)).collect();
+        assert_eq!(found, [(16, 13, 19), (5, 2, 8), (9, 6, 12)]);
+        for (contour, replaced) in [&far, &low, &high].into_iter().zip(&made.replaced) {
+            assert!(made.sections.section(replaced.section).iter().all(|p| closest(contour, *p).distance < 1e-14));
+        }
+        assert_eq!(made.sections, go(&[high.clone(), far.clone(), low.clone()], &options).sections);
+        // Apart from others a contour does what it does alone; 12 and 13 are ends of ranges.
+        let alone = apply(&tube, &far, &options);
+        for row in (0..=2).chain(12..21) {
+            let wanted = if row < 12 { &tube } else { &alone.sections };
+            assert_eq!(made.sections.section(row), wanted.section(row), "row {row}");
+        }
+        let one = apply(&tube, &low, &options);
+        assert_ne!(made.sections.section(7), one.sections.section(7), "both pull");
+        let moved = tube.points().iter().zip(made.sections.points()).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+        assert_eq!(made.largest_move, moved);
+    }
+    let error = |contours: &[Curve]| deform_by_cross_sections(&tube, contours, &options(0.31), &|_| true).unwrap_err();
+    assert_eq!(error(&[]), CrossSectionError::NoContour);
+    let same = error(&[low.clone(), high, contour(0.51, |_| 0.3).renamed("chest")]);
+    assert_eq!(same, CrossSectionError::SameSection { one: "waist".into(), other: "chest".into(), section: 5 });
+}

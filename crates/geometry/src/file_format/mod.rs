@@ -4,6 +4,7 @@
 //! Coordinates are `f64` in memory and `f32` in glTF and PLY; OBJ and JSON keep every digit.
 
 pub mod curves_json;
+mod encode;
 mod error;
 pub mod gltf_read;
 pub mod gltf_write;
@@ -17,6 +18,7 @@ pub mod svg;
 #[cfg(test)]
 mod sample;
 
+pub use encode::{EncodeError, encode};
 pub use error::{ReadError, WriteError};
 
 /// A file format, told by the ending of a file's name.

@@ -19,6 +19,13 @@ pub fn diagonal(mesh: &Mesh) -> f64 {
     bounds(mesh).map_or(0.0, |(low, high)| (high - low).length())
 }
 
+/// Diagonal of the box around points in metres; 0 where there is none.
+pub fn points_diagonal(points: &[DVec3]) -> f64 {
+    let Some(&first) = points.first() else { return 0.0 };
+    let (low, high) = points.iter().fold((first, first), |(low, high), p| (low.min(*p), high.max(*p)));
+    (high - low).length()
+}
+
 /// Vector area of a loop of points in square metres: its direction is the normal of the loop, its length the area
 /// enclosed by the loop's projection along that normal.
 ///

@@ -58,6 +58,14 @@ pub enum MeshError {
         /// Corners of the mesh.
         corners: usize,
     },
+    /// Positions for another mesh.
+    #[error("{found} positions given for {vertices} vertices")]
+    PositionCount {
+        /// Positions found.
+        found: usize,
+        /// Vertices of the mesh.
+        vertices: usize,
+    },
     /// More vertices or corners than 32-bit indices reach.
     #[error("the mesh has more than 4 294 967 295 vertices or corners")]
     TooLarge,
@@ -146,6 +154,33 @@ impl Mesh {
     pub fn named(mut self, name: impl Into<String>) -> Self {
         self.name = name.into();
         self
+    }
+
+    /// The same polygons, name and UVs over other positions, and other normals where some are given; without, there are
+    /// none.
+    ///
+    /// # Errors
+    /// [`MeshError`] where there is another number of positions than of vertices, or of normals than of corners, or one
+    /// is not finite.
+    pub fn with_positions(&self, positions: Vec<DVec3>, normals: Option<Vec<DVec3>>) -> Result<Self, MeshError> {
+        if positions.len() != self.positions.len() {
+            return Err(MeshError::PositionCount { found: positions.len(), vertices: self.positions.len() });
+        }
+        if let Some(index) = positions.iter().position(|p| !p.is_finite()) {
+            return Err(MeshError::NotFinite { what: "positions", index });
+        }
+        let mesh = Self {
+            name: self.name.clone(),
+            positions,
+            corners: self.corners.clone(),
+            starts: self.starts.clone(),
+            normals: None,
+            uvs: self.uvs.clone(),
+        };
+        match normals {
+            Some(normals) => mesh.with_normals(normals),
+            None => Ok(mesh),
+        }
     }
 
     /// The same mesh with a unit normal at each corner.

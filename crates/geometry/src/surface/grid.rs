@@ -23,6 +23,16 @@ pub(crate) struct Grid {
     pub across: Vec<f64>,
     /// The same before each row.
     pub along: Vec<f64>,
+    /// Columns in which the surface has an edge, ascending.
+    pub creases: Vec<Crease>,
+}
+
+/// A column in which the surface has an edge: the normals on its nearer side, where those of the grid are the other
+/// side's.
+pub(crate) struct Crease {
+    pub column: usize,
+    /// A normal for each row.
+    pub normals: Vec<DVec3>,
 }
 
 impl Grid {
@@ -143,7 +153,7 @@ pub(crate) fn sample(
     }
     starts.push(positions.len());
     let across = shares_across(&point.value, columns, cells);
-    let mut grid = Grid { positions, normals, starts, columns, cells, across, along: Vec::new() };
+    let mut grid = Grid { positions, normals, starts, columns, cells, across, along: Vec::new(), creases: Vec::new() };
     grid.along = shares_along(&grid, options.columns);
     Ok(grid)
 }

@@ -213,7 +213,11 @@ pub(crate) fn strip(parts: &mut MeshParts, grid: &Grid, row: usize) {
     for k in 0..grid.cells {
         let (left, right) = (grid.across[k], grid.across[k + 1]);
         let next = if k + 1 == grid.columns { 0 } else { k + 1 };
-        let (low_right, high_right) = (corner(low, next, right), corner(high, next, right));
+        let (mut low_right, mut high_right) = (corner(low, next, right), corner(high, next, right));
+        let after = (low_right, high_right);
+        if let Some(crease) = grid.creases.iter().find(|crease| crease.column == next) {
+            (low_right.1, high_right.1) = (crease.normals[low], crease.normals[high]);
+        }
         let middle = 0.5 * (left + right);
         if low_tip {
             parts.polygon([corner(low, 0, middle), high_right, high_left]);
@@ -222,6 +226,6 @@ pub(crate) fn strip(parts: &mut MeshParts, grid: &Grid, row: usize) {
         } else {
             parts.polygon([low_left, low_right, high_right, high_left]);
         }
-        (low_left, high_left) = (low_right, high_right);
+        (low_left, high_left) = after;
     }
 }

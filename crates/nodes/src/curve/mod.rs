@@ -1,7 +1,9 @@
 //! Nodes that work on curves.
 
+pub(crate) mod beam_reference;
 pub(crate) mod boundary_of;
 pub(crate) mod clean_strokes;
+pub(crate) mod compare_curves;
 pub(crate) mod draw_on_surface;
 pub(crate) mod join;
 pub(crate) mod mirror;

@@ -1,3 +1,24 @@
-//! Nodes that deform.
+//! Nodes that deform what others made.
 
+use maquette_geometry::deform::StrokeMatching;
+use maquette_graph::Choices;
+
+pub(crate) mod align_primitive;
+pub(crate) mod beam;
 pub(crate) mod deform_by_cross_section;
+pub(crate) mod deform_to_silhouette;
+
+/// How points of two strokes find each other.
+#[derive(Clone, Copy)]
+pub(crate) struct MatchingChoice(pub(crate) StrokeMatching);
+
+impl Choices for MatchingChoice {
+    const OPTIONS: &'static [(Self, &'static str, &'static str)] = &[
+        (
+            Self(StrokeMatching::ArcLength),
+            "arc-length",
+            "at the same share of the way; follows strokes that fold back, sections tilt where one side is longer",
+        ),
+        (Self(StrokeMatching::Height), "height", "at the same share of the height: sections stay level"),
+    ];
+}

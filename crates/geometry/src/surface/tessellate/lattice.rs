@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::evaluate_grid::fill;
 use super::table::Table;
-use crate::surface::analytic::AnalyticSurface;
-use crate::surface::grid::{Grid, shares_across, shares_along};
+use crate::surface::analytic::{AnalyticSurface, SurfacePoint};
+use crate::surface::grid::{Crease, Grid, shares_across, shares_along};
 use rayon::prelude::*;
 
 /// Rows of the surface, for each patch in order, from u = 0 to 1, and columns that all of them share.
@@ -80,11 +80,58 @@ impl Lattice {
             .flat_map(|row| positions[starts[*row]..starts[row + 1]].iter().copied())
             .collect();
         let across = shares_across(&measured, columns, cells);
-        let mut grid = Grid { positions, normals, starts, columns, cells, across, along: Vec::new() };
+        let creases = self.creases(patches, &stations, &normals, &starts);
+        let mut grid = Grid { positions, normals, starts, columns, cells, across, along: Vec::new(), creases };
         grid.along = shares_along(&grid, columns.div_ceil(MEASURED).max(1));
         grid
     }
+
+    /// The columns at joints where sections have a corner somewhere, with the normals of the segment that ends there.
+    fn creases(
+        &self,
+        patches: &[AnalyticSurface],
+        stations: &[(usize, f64)],
+        normals: &[DVec3],
+        starts: &[usize],
+    ) -> Vec<Crease> {
+        let mut creases = Vec::new();
+        for (column, v) in self.columns.iter().enumerate() {
+            // The piece of each patch that ends in this column, and the angle at which it does.
+            let ending = |patch: &AnalyticSurface| {
+                let pieces = &patch.angles().pieces;
+                let wrapped = if self.closed && column == 0 { self.end } else { *v };
+                let found = pieces.iter().find(|piece| (piece.to - wrapped).abs() <= SAME_ANGLE)?;
+                (pieces.len() > 1).then_some((*found, found.to))
+            };
+            let endings: Vec<_> = patches.iter().map(ending).collect();
+            if endings.iter().all(Option::is_none) || (!self.closed && column == 0) {
+                continue;
+            }
+            let mut creased = false;
+            let before = stations.iter().zip(starts.windows(2)).map(|((patch, u), span)| {
+                let own = normals[span[0] + if span[1] - span[0] == 1 { 0 } else { column }];
+                let Some((piece, angle)) = &endings[*patch] else { return own };
+                let found = SurfacePoint::new(*u, patches[*patch].derivatives(*u, piece, *angle)).normal;
+                if found == DVec3::ZERO || span[1] - span[0] == 1 || found.distance(own) < SMOOTH {
+                    return own;
+                }
+                creased = true;
+                found
+            });
+            let before: Vec<DVec3> = before.collect();
+            if creased {
+                creases.push(Crease { column, normals: before });
+            }
+        }
+        creases
+    }
 }
+
+/// How far apart angles may be that are one, radians.
+const SAME_ANGLE: f64 = 1e-9;
+
+/// Normals that differ by less are those of a smooth joint.
+const SMOOTH: f64 = 1e-4;
 
 /// Point and normal of a pole: the normal that all columns share, or zero where it is pointed.
 fn tip(patch: &AnalyticSurface, u: f64) -> (DVec3, DVec3) {

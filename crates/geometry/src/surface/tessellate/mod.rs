@@ -115,8 +115,8 @@ impl AnalyticSurface {
 ///
 /// - **Vertices** (metres) lie on the surfaces, in rows of common v; those of a section that two surfaces share are
 ///   shared. A pole is one vertex with a fan of triangles.
-/// - **Normals** at the corners are exact, from the tangents of the surfaces; at a shared section those of the first, and at
-///   a joint where sections have a corner those of the segment that begins there.
+/// - **Normals** at the corners are exact, from the tangents of the surfaces; at a shared section those of the first.
+///   At a joint where sections have a corner each side has its own: an edge that stays sharp.
 /// - **UVs** are shares of arc length as those of [`skin`](super::skin()): u around the section from 0 to 1, v along
 ///   the stack.
 ///

@@ -394,3 +394,35 @@ fn what_makes_no_mesh_is_refused() {
         assert_eq!(error, TessellationError::CapWithoutArea { side: Side::Start });
     }
 }
+
+#[test]
+fn a_corner_of_sections_is_a_sharp_edge() {
+    // Half a circle and its chord: a half-pipe with a flat side, corners of 90 degrees where they meet.
+    let section = |k: u32| {
+        let height = DVec3::Z * f64::from(k);
+        let arc = Series::new(vec![height, DVec3::X, DVec3::Y]).unwrap();
+        // The chord back from -X to X, as -cos over half a turn of its own.
+        let chord = Series::new(vec![height, -DVec3::X, DVec3::ZERO]).unwrap();
+        let segments = vec![
+            EllipticSegment { from: 0.0, to: PI, local: false, series: arc },
+            EllipticSegment { from: PI, to: TAU, local: true, series: chord },
+        ];
+        EllipticSection::new(PlaneFrame::new(height, DVec3::Z), true, segments).unwrap()
+    };
+    let sections: Vec<EllipticSection> = (0..4).map(section).collect();
+    let made = surface(&sections).tessellate(&grid(4, 24)).unwrap();
+    assert!(check(&made.mesh).corner_normals_agree);
+    let mesh = &made.mesh;
+    let normals = mesh.normals().unwrap();
+    let mut sides = [0, 0];
+    for polygon in 0..mesh.polygon_count() {
+        for corner in mesh.corner_range(polygon) {
+            let p = mesh.positions()[mesh.corners()[corner] as usize];
+            let flat = mesh.corner_range(polygon).all(|c| mesh.positions()[mesh.corners()[c] as usize].y.abs() < 1e-9);
+            let wanted = if flat { -DVec3::Y } else { DVec3::new(p.x, p.y, 0.0) };
+            assert!(normals[corner].distance(wanted) < 1e-9, "{p} {flat}: {}", normals[corner]);
+            sides[usize::from(flat)] += 1;
+        }
+    }
+    assert!(sides[0] >= 16 && sides[1] >= 16, "{sides:?}");
+}

@@ -1,12 +1,14 @@
-//! The results of a graph as a scene.
+//! The results of a graph as a scene, ready to be written or drawn.
 
 use maquette_geometry::mesh::Mesh;
 use maquette_geometry::scene::{CurveItem, Material, MeshItem, Scene};
 use maquette_graph::{Evaluation, NodeId};
-use maquette_nodes::wire;
 
-/// Collects the results of these nodes, each under the name of its node.
-pub(super) fn scene(evaluation: &Evaluation, targets: &[NodeId]) -> Scene {
+use crate::wire;
+
+/// Collects the results of these nodes, each under the name of its node: meshes and curves that `mesh-out`, `curves-out` and the
+/// like give. What an evaluation was not asked for, or what failed, is left out.
+pub fn scene(evaluation: &Evaluation, targets: &[NodeId]) -> Scene {
     let mut scene = Scene::default();
     for target in targets {
         let Some((outcome, values)) = evaluation.outcome(*target).zip(evaluation.values(*target)) else { continue };

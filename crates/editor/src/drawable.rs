@@ -1,0 +1,278 @@
+//! Values as what the views draw. Made on the evaluation's thread, once for each content.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec3, Vec3};
+use maquette_geometry::curve::Curve;
+use maquette_geometry::mesh::crease::{CREASE_DEGREES, creased_normals};
+use maquette_geometry::mesh::{Mesh, triangles};
+use maquette_geometry::scene::Material;
+use maquette_geometry::surface::tessellate::{Tessellation, tessellate};
+use maquette_graph::{Evaluation, NodeId, Value};
+use maquette_nodes::wire;
+
+use crate::mean_curvature::mean_curvature;
+
+/// A corner of a mesh as the graphics card gets it.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Vertex {
+    pub(crate) position: [f32; 3],
+    pub(crate) normal: [f32; 3],
+    /// Mean curvature, 1/m; zero where it was not asked for.
+    pub(crate) curvature: f32,
+}
+
+/// A piece of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct Segment {
+    pub(crate) from: [f32; 3],
+    pub(crate) to: [f32; 3],
+}
+
+/// A mesh, ready to be drawn.
+#[derive(Debug)]
+pub(crate) struct Surface {
+    pub(crate) vertices: Vec<Vertex>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+    /// Its edges, each once.
+    pub(crate) wire: Vec<Segment>,
+    /// Mean length of its edges, metres.
+    pub(crate) edge_length: f64,
+    /// Size of the curvature that deserves the strongest colour, 1/m.
+    pub(crate) curvature_scale: f32,
+}
+
+/// A line, ready to be drawn and picked.
+#[derive(Debug)]
+pub(crate) struct Line {
+    pub(crate) points: Vec<Vec3>,
+    pub(crate) closed: bool,
+    pub(crate) role: LineRole,
+}
+
+/// What a line is in a stack of sections.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LineRole {
+    /// A curve by itself.
+    Curve,
+    /// A cross-section.
+    Section,
+    /// Where corresponding points of the sections lie on a rail.
+    Rail,
+}
+
+/// A value, ready to be drawn.
+#[derive(Debug)]
+pub(crate) struct Drawable {
+    /// Different for every drawable of this process.
+    pub(crate) id: u64,
+    pub(crate) surface: Option<Surface>,
+    pub(crate) lines: Vec<Line>,
+    /// sRGB with alpha, as the document says; `None` where it says nothing.
+    pub(crate) colour: Option<[f32; 4]>,
+    /// Lowest and highest coordinates; `None` where nothing is drawn.
+    pub(crate) bounds: Option<[DVec3; 2]>,
+}
+
+/// What a node puts into the views.
+#[derive(Clone, Debug)]
+pub(crate) struct Shown {
+    pub(crate) node: NodeId,
+    pub(crate) drawables: Vec<Arc<Drawable>>,
+}
+
+/// The drawables of the last evaluation, by content.
+#[derive(Default)]
+pub(crate) struct Drawables {
+    known: BTreeMap<(u128, bool), Option<Arc<Drawable>>>,
+}
+
+impl Drawables {
+    /// What these nodes put into the views. What was made before is not made again.
+    pub(crate) fn of(&mut self, evaluation: &Evaluation, nodes: &[NodeId], curvature: bool) -> Vec<Shown> {
+        let mut used = BTreeMap::new();
+        let mut shown = Vec::new();
+        for &node in nodes {
+            let mut drawables = Vec::new();
+            for value in evaluation.values(node).unwrap_or_default() {
+                let key = (value.hash().0, curvature);
+                let known = used.get(&key).or_else(|| self.known.get(&key)).cloned();
+                let drawable = known.unwrap_or_else(|| drawable(value, curvature).map(Arc::new));
+                used.insert(key, drawable.clone());
+                drawables.extend(drawable);
+            }
+            if !drawables.is_empty() {
+                shown.push(Shown { node, drawables });
+            }
+        }
+        self.known = used;
+        shown
+    }
+}
+
+fn fresh_id() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
+}
+
+/// A value as what the views draw; `None` where it is nothing to see.
+fn drawable(value: &Value, curvature: bool) -> Option<Drawable> {
+    if let Some(mesh) = value.get::<wire::Mesh>() {
+        Some(of_mesh(&mesh.0, None, curvature))
+    } else if let Some(result) = value.get::<wire::MeshResult>() {
+        Some(of_mesh(&result.mesh, Some(&result.material), curvature))
+    } else if let Some(curve) = value.get::<wire::Curve>() {
+        Some(of_curves(std::slice::from_ref(&curve.0), None))
+    } else if let Some(curves) = value.get::<wire::Curves>() {
+        Some(of_curves(&curves.0, None))
+    } else if let Some(result) = value.get::<wire::CurvesResult>() {
+        Some(of_curves(&result.curves, Some(result.colour)))
+    } else if let Some(sections) = value.get::<wire::Sections>() {
+        Some(of_sections(&sections.0))
+    } else if let Some(sections) = value.get::<wire::EllipticSections>() {
+        Some(of_series(sections))
+    } else if let Some(sections) = value.get::<wire::CrossSections>() {
+        Some(match sections {
+            wire::CrossSections::Points(sections) => of_sections(&sections.0),
+            wire::CrossSections::Series(sections) => of_series(sections),
+        })
+    } else if let Some(surface) = value.get::<wire::Surface>() {
+        of_surface(surface, curvature)
+    } else {
+        let borders = value.get::<wire::Borders>()?;
+        let curves: Vec<Curve> = borders.0.iter().map(|border| border.curve().clone()).collect();
+        Some(of_curves(&curves, None))
+    }
+}
+
+/// Sections that are series, as lines through this many of their points.
+const SERIES_POINTS: usize = 96;
+
+fn of_series(sections: &wire::EllipticSections) -> Drawable {
+    let sampled: Vec<(Vec<DVec3>, bool)> =
+        sections.0.iter().map(|named| (named.section.sampled(SERIES_POINTS), named.section.is_closed())).collect();
+    let line = |(points, closed): &(Vec<DVec3>, bool)| Line {
+        points: points.iter().map(|p| p.as_vec3()).collect(),
+        closed: *closed,
+        role: LineRole::Section,
+    };
+    Drawable {
+        id: fresh_id(),
+        surface: None,
+        lines: sampled.iter().map(line).collect(),
+        colour: None,
+        bounds: bounds(sampled.iter().flat_map(|(points, _)| points).copied()),
+    }
+}
+
+/// A surface as a mesh of moderate density. One that is known at its sections only is shown by these.
+fn of_surface(surface: &wire::Surface, curvature: bool) -> Option<Drawable> {
+    match surface {
+        wire::Surface::Points(sections) => Some(of_sections(sections)),
+        wire::Surface::Series(parts) => {
+            let made = tessellate(parts, &Tessellation::default(), &|_| true).ok()?;
+            Some(of_mesh(&made.mesh, None, curvature))
+        }
+    }
+}
+
+fn bounds(points: impl Iterator<Item = DVec3>) -> Option<[DVec3; 2]> {
+    points.map(|p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "the graphics card takes single precision")]
+fn of_mesh(mesh: &Mesh, material: Option<&Material>, curvature: bool) -> Drawable {
+    let creased;
+    let normals = match mesh.normals() {
+        Some(normals) => normals,
+        None => {
+            creased = creased_normals(mesh, CREASE_DEGREES);
+            &creased
+        }
+    };
+    let place = |corner: usize| mesh.positions()[mesh.corners()[corner] as usize];
+    let bent = if curvature { mean_curvature(mesh) } else { Vec::new() };
+    let vertices = (0..mesh.corners().len()).map(|corner| Vertex {
+        position: place(corner).as_vec3().to_array(),
+        normal: normals[corner].as_vec3().to_array(),
+        curvature: bent.get(mesh.corners()[corner] as usize).map_or(0.0, |bent| *bent as f32),
+    });
+    // More corners than 32-bit indices reach would not fit into memory.
+    let triangles = triangles(mesh).map(|corners| corners.map(|corner| corner as u32)).collect();
+    let mut edges: Vec<[u32; 2]> = Vec::with_capacity(mesh.corners().len());
+    for polygon in mesh.polygons() {
+        let Some(&last) = polygon.last() else { continue };
+        let mut before = last;
+        for &vertex in polygon {
+            edges.push([before.min(vertex), before.max(vertex)]);
+            before = vertex;
+        }
+    }
+    edges.sort_unstable();
+    edges.dedup();
+    let at = |vertex: u32| mesh.positions()[vertex as usize].as_vec3().to_array();
+    let wire = edges.iter().map(|[a, b]| Segment { from: at(*a), to: at(*b) }).collect();
+    let length = |[a, b]: &[u32; 2]| mesh.positions()[*a as usize].distance(mesh.positions()[*b as usize]);
+    let edge_length = edges.iter().map(length).sum::<f64>() / edges.len().max(1) as f64;
+    let mut sizes: Vec<f64> = bent.iter().map(|bent| bent.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    // One wild vertex must not take the colour from all others.
+    let scale = sizes.get(sizes.len() * 95 / 100).copied().unwrap_or(1.0).max(1e-6);
+    let surface = Surface { vertices: vertices.collect(), triangles, wire, edge_length, curvature_scale: scale as f32 };
+    Drawable {
+        id: fresh_id(),
+        bounds: bounds((0..mesh.corners().len()).map(place)),
+        surface: Some(surface),
+        lines: Vec::new(),
+        colour: material.map(|material| material.colour.map(|component| component as f32)),
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "the graphics card takes single precision")]
+fn of_curves(curves: &[Curve], colour: Option<[f64; 4]>) -> Drawable {
+    let line = |curve: &Curve| Line {
+        points: curve.points().iter().map(|p| p.as_vec3()).collect(),
+        closed: curve.is_closed(),
+        role: LineRole::Curve,
+    };
+    Drawable {
+        id: fresh_id(),
+        surface: None,
+        lines: curves.iter().map(line).collect(),
+        colour: colour.map(|colour| colour.map(|component| component as f32)),
+        bounds: bounds(curves.iter().flat_map(|curve| curve.points()).copied()),
+    }
+}
+
+fn of_sections(sections: &maquette_geometry::sections::Sections) -> Drawable {
+    let single = |points: &[DVec3]| points.iter().map(|p| p.as_vec3()).collect::<Vec<_>>();
+    let rows =
+        sections.iter().map(|row| Line { points: single(row), closed: sections.is_closed(), role: LineRole::Section });
+    let rails = sections.rails().iter().map(|rail| Line {
+        points: sections.iter().filter_map(|row| row.get(*rail)).map(|p| p.as_vec3()).collect(),
+        closed: false,
+        role: LineRole::Rail,
+    });
+    Drawable {
+        id: fresh_id(),
+        surface: None,
+        lines: rows.chain(rails).collect(),
+        colour: None,
+        bounds: bounds(sections.points().iter().copied()),
+    }
+}
+
+impl Line {
+    /// The pieces it is drawn with.
+    pub(crate) fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
+        let count = self.points.len();
+        let pieces = if self.closed { count } else { count.saturating_sub(1) };
+        (0..pieces)
+            .map(move |i| Segment { from: self.points[i].to_array(), to: self.points[(i + 1) % count].to_array() })
+    }
+}

@@ -1,0 +1,63 @@
+//! The panels. Each is a projection of the document and the results, and knows nothing of the others.
+
+pub(crate) mod data;
+pub(crate) mod help;
+pub(crate) mod history;
+pub(crate) mod inspector;
+pub(crate) mod palette;
+pub(crate) mod performance;
+pub(crate) mod problems;
+
+use maquette_graph::{Catalogue, Graph, Node, NodeId};
+
+use crate::command::Command;
+use crate::document::Document;
+use crate::results::Results;
+use crate::view_state::{Settings, ViewState};
+
+/// What every panel sees, and where it leaves what it asks for.
+pub(crate) struct PanelContext<'a> {
+    pub(crate) catalogue: &'a Catalogue,
+    pub(crate) document: &'a Document,
+    pub(crate) results: &'a Results,
+    pub(crate) view: &'a ViewState,
+    pub(crate) settings: &'a mut Settings,
+    pub(crate) commands: &'a mut Vec<Command>,
+}
+
+impl<'a> PanelContext<'a> {
+    /// The graph on the canvas.
+    pub(crate) fn graph(&self) -> &'a Graph {
+        self.document.graph_at(&self.view.path).unwrap_or(self.document.graph())
+    }
+
+    /// The node that the inspector shows.
+    pub(crate) fn active(&self) -> Option<(NodeId, &'a Node)> {
+        let id = self.view.active?;
+        Some((id, self.graph().node(id)?))
+    }
+
+    /// How the results call a node of the canvas.
+    pub(crate) fn path_of(&self, name: &str) -> String {
+        let mut path = String::new();
+        let mut graph = self.document.graph();
+        for id in &self.view.path {
+            let Some(node) = graph.node(*id) else { break };
+            path.push_str(node.name());
+            path.push('/');
+            let Some(within) = node.body().and_then(|body| body.graph()) else { break };
+            graph = within;
+        }
+        path.push_str(name);
+        path
+    }
+
+    /// Whether the whole graph is on the canvas.
+    pub(crate) fn is_outermost(&self) -> bool {
+        self.view.path.is_empty()
+    }
+
+    pub(crate) fn ask(&mut self, command: impl Into<Command>) {
+        self.commands.push(command.into());
+    }
+}

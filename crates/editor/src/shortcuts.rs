@@ -1,0 +1,138 @@
+//! The keys and what they do: one list, for the keys themselves and for the sheet that F1 shows.
+
+use egui::{Key, KeyboardShortcut, Modifiers};
+
+use crate::command::{Command, FileCommand, GraphCommand, ViewCommand};
+use crate::view_state::{Tool, ViewState};
+
+/// A key and what it does.
+pub(crate) struct Shortcut {
+    pub(crate) group: &'static str,
+    modifiers: Modifiers,
+    key: Key,
+    pub(crate) what: &'static str,
+    make: fn(&ViewState) -> Option<Command>,
+}
+
+/// The groups of the sheet.
+pub(crate) const GROUPS: [&str; 3] = ["File", "Graph", "Views and tools"];
+
+const fn shortcut(
+    group: usize,
+    modifiers: Modifiers,
+    key: Key,
+    what: &'static str,
+    make: fn(&ViewState) -> Option<Command>,
+) -> Shortcut {
+    Shortcut { group: GROUPS[group], modifiers, key, what, make }
+}
+
+const NONE: Modifiers = Modifiers::NONE;
+const COMMAND: Modifiers = Modifiers::COMMAND;
+const BOTH: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+/// All of them. Longer chords stand before shorter ones of the same key, which would answer first.
+pub(crate) const SHORTCUTS: &[Shortcut] = &[
+    shortcut(0, COMMAND, Key::N, "new graph", |_| Some(FileCommand::New.into())),
+    shortcut(0, COMMAND, Key::O, "open", |_| Some(FileCommand::OpenDialog.into())),
+    shortcut(0, BOTH, Key::S, "save as", |_| Some(FileCommand::SaveAsDialog.into())),
+    shortcut(0, COMMAND, Key::S, "save", |_| Some(FileCommand::Save.into())),
+    shortcut(0, COMMAND, Key::E, "export the results", |_| Some(FileCommand::ExportDialog.into())),
+    shortcut(0, COMMAND, Key::Q, "quit", |_| Some(FileCommand::Quit.into())),
+    shortcut(0, BOTH, Key::Z, "redo", |_| Some(GraphCommand::Redo.into())),
+    shortcut(0, COMMAND, Key::Z, "undo", |_| Some(GraphCommand::Undo.into())),
+    shortcut(0, COMMAND, Key::Y, "redo", |_| Some(GraphCommand::Redo.into())),
+    shortcut(0, NONE, Key::F1, "this sheet", |_| Some(ViewCommand::Keys.into())),
+    shortcut(1, NONE, Key::Tab, "add a node", |_| Some(ViewCommand::Search.into())),
+    shortcut(1, Modifiers::SHIFT, Key::A, "add a node", |_| Some(ViewCommand::Search.into())),
+    shortcut(1, COMMAND, Key::A, "select all", |_| Some(ViewCommand::SelectAll.into())),
+    shortcut(1, BOTH, Key::D, "duplicate with links", |_| Some(GraphCommand::Duplicate { keep_links: true }.into())),
+    shortcut(1, COMMAND, Key::D, "duplicate", |_| Some(GraphCommand::Duplicate { keep_links: false }.into())),
+    shortcut(1, BOTH, Key::G, "ungroup", |_| Some(GraphCommand::Ungroup.into())),
+    shortcut(1, COMMAND, Key::G, "group", |_| Some(GraphCommand::Group.into())),
+    shortcut(1, COMMAND, Key::Backspace, "dissolve", |_| Some(GraphCommand::Dissolve.into())),
+    shortcut(1, NONE, Key::Delete, "delete", |_| Some(GraphCommand::Delete.into())),
+    shortcut(1, NONE, Key::M, "mute", |_| Some(GraphCommand::Mute.into())),
+    shortcut(1, NONE, Key::D, "display", |view| Some(ViewCommand::Display(view.active?).into())),
+    shortcut(1, NONE, Key::P, "pin", |view| Some(ViewCommand::Pin(view.active?).into())),
+    shortcut(1, NONE, Key::L, "arrange all nodes", |_| Some(GraphCommand::Arrange.into())),
+    shortcut(1, NONE, Key::Enter, "enter the graph within", |view| Some(ViewCommand::Enter(view.active?).into())),
+    shortcut(1, NONE, Key::U, "leave it again", |view| {
+        Some(ViewCommand::LeaveTo(view.path.len().checked_sub(1)?).into())
+    }),
+    shortcut(2, NONE, Key::Q, "select", |_| Some(ViewCommand::Take(Tool::Select).into())),
+    shortcut(2, NONE, Key::S, "sketch", |_| Some(ViewCommand::Take(Tool::Sketch).into())),
+    shortcut(2, NONE, Key::W, "pull", |_| Some(ViewCommand::Take(Tool::Pull).into())),
+    shortcut(2, NONE, Key::E, "erase", |_| Some(ViewCommand::Take(Tool::Erase).into())),
+    shortcut(2, NONE, Key::F, "frame selected", |_| Some(ViewCommand::FrameSelected.into())),
+    shortcut(2, NONE, Key::A, "frame all", |_| Some(ViewCommand::FrameAll.into())),
+    shortcut(2, NONE, Key::Home, "frame all", |_| Some(ViewCommand::FrameAll.into())),
+    shortcut(2, NONE, Key::Space, "maximise what is under the pointer", |_| Some(ViewCommand::Maximise.into())),
+    shortcut(2, NONE, Key::Escape, "stop evaluating", |_| Some(ViewCommand::Stop.into())),
+];
+
+impl Shortcut {
+    /// The keys in words.
+    pub(crate) fn keys(&self) -> String {
+        let names = egui::ModifierNames::NAMES;
+        let modifiers = names.format(&self.modifiers, false);
+        if modifiers.is_empty() { self.key.name().to_owned() } else { format!("{modifiers}+{}", self.key.name()) }
+    }
+}
+
+/// What the keys of this frame ask for. While text is typed, keys are text; away from the canvas, Tab goes from field to field.
+/// While something is `searching`, keys are the search's.
+pub(crate) fn pressed(context: &egui::Context, view: &ViewState, over_canvas: bool, searching: bool) -> Vec<Command> {
+    let typing = searching || context.egui_wants_keyboard_input();
+    let mut asked = Vec::new();
+    context.input_mut(|input| {
+        for shortcut in SHORTCUTS {
+            let is_chord = shortcut.modifiers.command || matches!(shortcut.key, Key::F1);
+            if typing && (!is_chord || matches!(shortcut.key, Key::A | Key::Z | Key::Y | Key::Backspace)) {
+                continue;
+            }
+            if shortcut.key == Key::Tab && !over_canvas {
+                continue;
+            }
+            if input.consume_shortcut(&KeyboardShortcut::new(shortcut.modifiers, shortcut.key)) {
+                asked.extend((shortcut.make)(view));
+            }
+        }
+        if typing {
+            return;
+        }
+        for event in &input.events {
+            match event {
+                egui::Event::Copy => asked.push(GraphCommand::Copy.into()),
+                egui::Event::Cut => asked.push(GraphCommand::Cut.into()),
+                egui::Event::Paste(text) => asked.push(GraphCommand::Paste { text: text.clone() }.into()),
+                _ => {}
+            }
+        }
+    });
+    asked
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_chord_means_one_thing_and_longer_ones_come_first() {
+        for (index, shortcut) in SHORTCUTS.iter().enumerate() {
+            assert!(GROUPS.contains(&shortcut.group) && !shortcut.what.is_empty());
+            for later in &SHORTCUTS[index + 1..] {
+                if later.key == shortcut.key {
+                    assert_ne!(later.modifiers, shortcut.modifiers, "{}", later.keys());
+                    assert!(
+                        !later.modifiers.contains(shortcut.modifiers)
+                            || shortcut.modifiers == NONE
+                            || later.modifiers == NONE,
+                        "{}",
+                        later.keys()
+                    );
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! How one looks at the document: neither saved with it nor undone.
+
+use std::collections::BTreeSet;
+
+use maquette_graph::{Graph, NodeId};
+use serde::{Deserialize, Serialize};
+
+use crate::viewport::picture::Shading;
+
+/// What the pointer does in a view.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Tool {
+    /// Picks what is shown.
+    #[default]
+    Select,
+    /// Draws strokes; near an existing one it draws that part anew.
+    Sketch,
+    /// Pulls points of strokes, and their neighbours with them.
+    Pull,
+    /// Takes away what it is drawn across.
+    Erase,
+}
+
+impl Tool {
+    /// All tools, in the order of the bar.
+    pub const ALL: [Self; 4] = [Self::Select, Self::Sketch, Self::Pull, Self::Erase];
+
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Select => "Select",
+            Self::Sketch => "Sketch",
+            Self::Pull => "Pull",
+            Self::Erase => "Erase",
+        }
+    }
+
+    /// One line on how it is used.
+    pub fn description(self) -> &'static str {
+        match self {
+            Self::Select => "Click on what is shown to select the node that made it",
+            Self::Sketch => {
+                "Draw in the front, side or top view; along a stroke to draw that part anew, from its end to go on"
+            }
+            Self::Pull => "Drag a point of a stroke; its neighbours follow within the radius",
+            Self::Erase => "Drag across strokes to take parts of them away",
+        }
+    }
+}
+
+/// What is remembered from one session to the next.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// How surfaces are looked at.
+    pub shading: Shading,
+    /// Whether edges are drawn over them.
+    pub wire: bool,
+    /// Whether the grid is drawn.
+    pub grid: bool,
+    /// Whether curves are drawn.
+    pub curves: bool,
+    /// Whether sections are drawn.
+    pub sections: bool,
+    /// Whether edges are smoothed; costs time without a graphics card.
+    pub smooth_edges: bool,
+    /// Whether the middle button turns (Blender) or Alt with the left one (Maya).
+    pub maya_navigation: bool,
+    /// How far a drawn stroke may be from the pen, metres.
+    pub tolerance: f64,
+    /// How far pulling reaches, metres.
+    pub pull_radius: f64,
+    /// Whether what is drawn across the middle of the body is mirrored.
+    pub symmetric: bool,
+    /// Files that were opened, the last one first.
+    pub recent: Vec<std::path::PathBuf>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            shading: Shading::default(),
+            wire: true,
+            grid: true,
+            curves: true,
+            sections: true,
+            smooth_edges: true,
+            maya_navigation: false,
+            tolerance: 0.002,
+            pull_radius: 0.1,
+            symmetric: false,
+            recent: Vec::new(),
+        }
+    }
+}
+
+impl Settings {
+    /// Puts a file at the head of those that were opened.
+    pub(crate) fn remember(&mut self, path: &std::path::Path) {
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        self.recent.retain(|known| *known != path);
+        self.recent.insert(0, path);
+        self.recent.truncate(10);
+    }
+}
+
+/// How one looks at the document.
+#[derive(Debug, Default)]
+pub struct ViewState {
+    /// The nodes that were entered, each in the graph within the one before.
+    pub path: Vec<NodeId>,
+    /// The selected nodes of the graph on the canvas.
+    pub selection: BTreeSet<NodeId>,
+    /// The one that the inspector shows.
+    pub active: Option<NodeId>,
+    /// The node of the whole graph that is shown alone; `None` for the results.
+    pub displayed: Option<NodeId>,
+    /// Nodes of the whole graph that are shown as well.
+    pub pinned: BTreeSet<NodeId>,
+    /// Nodes of the canvas whose inputs with values are shown.
+    pub expanded: BTreeSet<NodeId>,
+    /// What the pointer does in a view.
+    pub tool: Tool,
+    /// What was said last.
+    pub message: Option<crate::command::Message>,
+    /// Whether the keyboard sheet is open.
+    pub keys: bool,
+}
+
+impl ViewState {
+    /// Forgets what the graph has no longer.
+    pub(crate) fn prune(&mut self, whole: &Graph, graph_at: impl Fn(&[NodeId]) -> bool) {
+        while !graph_at(&self.path) {
+            self.path.pop();
+            self.selection.clear();
+            self.active = None;
+        }
+        let graph = self.path.iter().try_fold(whole, |graph, id| graph.node(*id)?.body()?.graph());
+        if let Some(graph) = graph {
+            self.selection.retain(|id| graph.node(*id).is_some());
+            self.active = self.active.filter(|id| graph.node(*id).is_some());
+            self.expanded.retain(|id| graph.node(*id).is_some());
+        }
+        self.displayed = self.displayed.filter(|id| whole.node(*id).is_some());
+        self.pinned.retain(|id| whole.node(*id).is_some());
+    }
+
+    /// The nodes of the whole graph that the views show: what is displayed, then what is pinned.
+    pub(crate) fn drawn(&self, whole: &Graph) -> Vec<NodeId> {
+        let mut drawn = match self.displayed {
+            Some(node) => vec![node],
+            None => whole.results(),
+        };
+        drawn.extend(self.pinned.iter().filter(|id| !drawn.contains(id)).copied().collect::<Vec<_>>());
+        drawn
+    }
+}

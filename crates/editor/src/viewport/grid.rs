@@ -1,0 +1,108 @@
+//! The grid of a view: lines at round numbers of metres, as fine as can be told apart.
+
+use glam::DVec3;
+
+use crate::drawable::Segment;
+
+use super::camera::{Camera, Direction, ViewSize};
+
+/// Least distance of two lines on the screen, points.
+const LEAST_GAP: f64 = 14.0;
+/// Most lines to either side of the middle.
+const MOST_LINES: i64 = 200;
+
+/// A grid in the plane of a view; of a free view on the floor.
+pub(crate) struct Grid {
+    /// Distance of its fine lines, metres: a power of ten.
+    pub(crate) step: f64,
+    pub(crate) fine: Vec<Segment>,
+    /// Every tenth line.
+    pub(crate) coarse: Vec<Segment>,
+    /// The two axes in the plane, first and second, with the axis of the world each runs along.
+    pub(crate) axes: [(usize, Segment); 2],
+}
+
+/// The two axes of the world that span the plane of a view.
+fn plane(direction: Direction) -> [usize; 2] {
+    match direction {
+        Direction::Front => [0, 1],
+        Direction::Side => [2, 1],
+        Direction::Top | Direction::Free => [0, 2],
+    }
+}
+
+fn segment(from: DVec3, to: DVec3) -> Segment {
+    Segment { from: from.as_vec3().to_array(), to: to.as_vec3().to_array() }
+}
+
+impl Grid {
+    /// The grid around what the camera looks at.
+    pub(crate) fn new(camera: &Camera, size: ViewSize) -> Self {
+        let metres = camera.metres_per_point(size);
+        let mut step = 10_f64.powf((metres * LEAST_GAP).log10().ceil());
+        let extent = size.longer() * metres * if camera.is_parallel() { 0.6 } else { 2.0 };
+        if extent / step > MOST_LINES as f64 {
+            step *= 10.0;
+        }
+        let [u, v] = plane(camera.direction);
+        let focus = camera.focus();
+        #[expect(clippy::cast_possible_truncation, reason = "a few hundred lines")]
+        let lines = |axis: usize| {
+            let first = ((focus[axis] - extent) / step).ceil() as i64;
+            let last = ((focus[axis] + extent) / step).floor() as i64;
+            first..=last.min(first + 2 * MOST_LINES)
+        };
+        let along = |axis: usize, other: usize, place: f64| {
+            let mut from = DVec3::ZERO;
+            from[axis] = place;
+            let mut to = from;
+            from[other] = focus[other] - extent;
+            to[other] = focus[other] + extent;
+            segment(from, to)
+        };
+        let (mut fine, mut coarse) = (Vec::new(), Vec::new());
+        for (axis, other) in [(u, v), (v, u)] {
+            for k in lines(axis) {
+                let line = along(axis, other, k as f64 * step);
+                if k % 10 == 0 { coarse.push(line) } else { fine.push(line) }
+            }
+        }
+        Self { step, fine, coarse, axes: [(u, along(v, u, 0.0)), (v, along(u, v, 0.0))] }
+    }
+
+    /// The distance of the lines in words.
+    pub(crate) fn label(&self) -> String {
+        match self.step {
+            step if step >= 1.0 => format!("{step:.0} m"),
+            step if step >= 0.0095 => format!("{:.0} cm", step * 100.0),
+            step if step >= 0.00095 => format!("{:.0} mm", step * 1000.0),
+            step => format!("{:.3} mm", step * 1000.0),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_step_is_a_round_number_that_fits_the_zoom() {
+        let size = ViewSize::new(egui::vec2(400.0, 400.0));
+        for (distance, label) in [(0.1, "1 cm"), (3.5, "10 cm"), (40.0, "1 m"), (400.0, "10 m")] {
+            let mut camera = Camera::new(Direction::Front);
+            camera.distance = distance;
+            let grid = Grid::new(&camera, size);
+            assert_eq!(grid.label(), label, "from {distance} m");
+            let gap = grid.step / camera.metres_per_point(size);
+            assert!((14.0..141.0).contains(&gap), "{gap} points");
+            assert!(grid.fine.len() + grid.coarse.len() < 1000);
+        }
+    }
+
+    #[test]
+    fn a_side_grid_lies_in_the_plane_of_side_sketches() {
+        let grid = Grid::new(&Camera::new(Direction::Side), ViewSize::new(egui::vec2(300.0, 300.0)));
+        assert!(grid.fine.iter().chain(&grid.coarse).all(|line| line.from[0] == 0.0 && line.to[0] == 0.0));
+        assert_eq!(grid.axes.map(|(axis, _)| axis), [2, 1]);
+    }
+}

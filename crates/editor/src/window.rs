@@ -1,0 +1,363 @@
+//! The frame around the panels: menus and tools above, messages below, the panels where the user put them.
+
+use egui::{RichText, Ui};
+use egui_tiles::{Behavior, SimplificationOptions, TileId, Tiles, UiResponse};
+
+use crate::app::{App, is_graph};
+use crate::canvas::Canvas;
+use crate::command::{Command, FileCommand, GraphCommand, NewLink, ViewCommand};
+use crate::dialog;
+use crate::dock::{self, Pane};
+use crate::panel::data::Data;
+use crate::panel::inspector::Inspector;
+use crate::panel::palette::{DraggedKind, Palette};
+use crate::panel::{PanelContext, help, history, performance, problems};
+use crate::view_state::Tool;
+use crate::viewport::picture::Shading;
+use crate::viewport::{Graphics, ViewPane};
+
+impl App {
+    pub(crate) fn show(&mut self, ui: &mut Ui) {
+        egui::Panel::top("menus").show(ui, |ui| self.menus(ui));
+        egui::Panel::top("tools").show(ui, |ui| self.tools(ui));
+        if !self.recovery.left.is_empty() {
+            egui::Panel::top("recovery").show(ui, |ui| {
+                let asked = dialog::offer(ui, &self.recovery.left);
+                self.commands.extend(asked.map(Command::from));
+            });
+        }
+        egui::Panel::bottom("status").show(ui, |ui| self.status(ui));
+        egui::CentralPanel::no_frame().show(ui, |ui| self.panels(ui));
+        if self.view.keys && !help::keys(ui) {
+            self.view.keys = false;
+        }
+        let dropped = ui.input(|i| {
+            let paths = i.raw.dropped_files.iter().map(|file| file.path());
+            paths.into_iter().find(|path| is_graph(path)).map(std::path::Path::to_owned)
+        });
+        if let Some(path) = dropped {
+            self.commands.push(FileCommand::Open(path).into());
+        }
+    }
+
+    fn panels(&mut self, ui: &mut Ui) {
+        let maximised = self.maximised;
+        let mut tree = std::mem::replace(&mut self.tree, egui_tiles::Tree::empty("dock"));
+        let mut panes = Panes {
+            context: PanelContext {
+                catalogue: &self.catalogue,
+                document: &self.document,
+                results: &self.results,
+                view: &self.view,
+                settings: &mut self.settings,
+                commands: &mut self.commands,
+            },
+            canvas: &mut self.canvas,
+            views: &mut self.views,
+            inspector: &mut self.inspector,
+            palette: &mut self.palette,
+            data: &mut self.data,
+            graphics: self.graphics,
+            hovered: None,
+        };
+        match maximised {
+            Some(mut pane) => {
+                panes.show(ui, &mut pane);
+            }
+            None => tree.ui(&mut panes, ui),
+        }
+        self.hovered = panes.hovered;
+        self.tree = tree;
+    }
+
+    fn menus(&mut self, ui: &mut Ui) {
+        egui::MenuBar::new().ui(ui, |ui| {
+            ui.menu_button("File", |ui| self.file_menu(ui));
+            ui.menu_button("Edit", |ui| self.edit_menu(ui));
+            ui.menu_button("View", |ui| self.view_menu(ui));
+            ui.menu_button("Window", |ui| {
+                for pane in Pane::ALL {
+                    if ui.button(pane.name()).clicked() {
+                        self.maximised = None;
+                        dock::reveal(&mut self.tree, pane);
+                        ui.close();
+                    }
+                }
+                ui.separator();
+                if ui.button("Reset the layout").clicked() {
+                    self.tree = dock::first_layout();
+                    self.maximised = None;
+                    ui.close();
+                }
+                ui.separator();
+                egui::widgets::global_theme_preference_buttons(ui);
+            });
+            if ui.button("Keys").on_hover_text("All keys (F1)").clicked() {
+                self.commands.push(ViewCommand::Keys.into());
+            }
+        });
+    }
+
+    fn item(&mut self, ui: &mut Ui, text: &str, keys: &str, enabled: bool, command: impl Into<Command>) {
+        if ui.add_enabled(enabled, egui::Button::new(text).shortcut_text(keys)).clicked() {
+            self.commands.push(command.into());
+            ui.close();
+        }
+    }
+
+    fn file_menu(&mut self, ui: &mut Ui) {
+        self.item(ui, "New", "Ctrl+N", true, FileCommand::New);
+        self.item(ui, "Open…", "Ctrl+O", true, FileCommand::OpenDialog);
+        let recent = self.settings.recent.clone();
+        ui.add_enabled_ui(!recent.is_empty(), |ui| {
+            ui.menu_button("Recent", |ui| {
+                for path in recent {
+                    self.item(ui, &path.display().to_string(), "", true, FileCommand::Open(path.clone()));
+                }
+            });
+        });
+        let examples = examples(&self.document.folder());
+        ui.add_enabled_ui(!examples.is_empty(), |ui| {
+            ui.menu_button("Graphs beside it", |ui| {
+                for path in examples {
+                    let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+                    self.item(ui, &name, "", true, FileCommand::Open(path.clone()));
+                }
+            });
+        });
+        ui.separator();
+        self.item(ui, "Save", "Ctrl+S", true, FileCommand::Save);
+        self.item(ui, "Save as…", "Ctrl+Shift+S", true, FileCommand::SaveAsDialog);
+        self.item(ui, "Export results…", "Ctrl+E", true, FileCommand::ExportDialog);
+        ui.separator();
+        self.item(ui, "Quit", "Ctrl+Q", true, FileCommand::Quit);
+    }
+
+    fn edit_menu(&mut self, ui: &mut Ui) {
+        let history = self.document.history();
+        let undo = history.undo_name().map(|name| format!("Undo {name}"));
+        let redo = history.redo_name().map(|name| format!("Redo {name}"));
+        let some = !self.view.selection.is_empty();
+        self.item(ui, undo.as_deref().unwrap_or("Undo"), "Ctrl+Z", undo.is_some(), GraphCommand::Undo);
+        self.item(ui, redo.as_deref().unwrap_or("Redo"), "Ctrl+Shift+Z", redo.is_some(), GraphCommand::Redo);
+        ui.separator();
+        self.item(ui, "Add node…", "Tab", true, ViewCommand::Search);
+        self.item(ui, "Duplicate", "Ctrl+D", some, GraphCommand::Duplicate { keep_links: false });
+        self.item(ui, "Duplicate with links", "Ctrl+Shift+D", some, GraphCommand::Duplicate { keep_links: true });
+        self.item(ui, "Copy", "Ctrl+C", some, GraphCommand::Copy);
+        self.item(ui, "Cut", "Ctrl+X", some, GraphCommand::Cut);
+        self.item(ui, "Delete", "Delete", some, GraphCommand::Delete);
+        self.item(ui, "Dissolve", "Ctrl+Backspace", some, GraphCommand::Dissolve);
+        ui.separator();
+        self.item(ui, "Mute", "M", some, GraphCommand::Mute);
+        self.item(ui, "Group", "Ctrl+G", some, GraphCommand::Group);
+        self.item(ui, "Ungroup", "Ctrl+Shift+G", some, GraphCommand::Ungroup);
+        ui.separator();
+        self.item(ui, "Select all", "Ctrl+A", true, ViewCommand::SelectAll);
+        self.item(ui, "Arrange all", "L", true, GraphCommand::Arrange);
+    }
+
+    fn view_menu(&mut self, ui: &mut Ui) {
+        for shading in Shading::ALL {
+            let response = ui.radio_value(&mut self.settings.shading, shading, shading.name());
+            response.on_hover_text(shading.description());
+        }
+        ui.separator();
+        let settings = &mut self.settings;
+        ui.checkbox(&mut settings.wire, "Edges");
+        ui.checkbox(&mut settings.curves, "Curves");
+        ui.checkbox(&mut settings.sections, "Sections and rails");
+        ui.checkbox(&mut settings.grid, "Grid");
+        let smooth = egui::Checkbox::new(&mut settings.smooth_edges, "Smooth edges");
+        ui.add_enabled(self.graphics == Graphics::Smooth, smooth).on_hover_text("Costs time without a graphics card");
+        ui.separator();
+        ui.checkbox(&mut settings.maya_navigation, "Navigate as in Maya")
+            .on_hover_text("Alt with the left, middle and right button; otherwise as in Blender, with the middle one");
+        ui.separator();
+        self.item(ui, "Frame all", "Home", true, ViewCommand::FrameAll);
+        self.item(ui, "Frame selected", "F", true, ViewCommand::FrameSelected);
+    }
+
+    fn tools(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            for tool in Tool::ALL {
+                let on = self.view.tool == tool;
+                let button = ui.add(egui::Button::selectable(on, tool.name()));
+                button.widget_info(|| {
+                    egui::WidgetInfo::selected(egui::WidgetType::RadioButton, true, on, format!("{} tool", tool.name()))
+                });
+                if button.on_hover_text(tool.description()).clicked() {
+                    self.commands.push(ViewCommand::Take(tool).into());
+                }
+            }
+            ui.separator();
+            let settings = &mut self.settings;
+            match self.view.tool {
+                Tool::Sketch => {
+                    ui.label("tolerance");
+                    let mut millimetres = settings.tolerance * 1000.0;
+                    let field = egui::DragValue::new(&mut millimetres).range(0.1..=100.0).speed(0.1).suffix(" mm");
+                    let field = ui.add(field);
+                    field.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::DragValue, true, "tolerance"));
+                    field.on_hover_text("How far a stroke may be from the pen: larger is smoother");
+                    settings.tolerance = millimetres / 1000.0;
+                    ui.checkbox(&mut settings.symmetric, "symmetric").on_hover_text("Draws the mirror image too");
+                }
+                Tool::Pull => {
+                    ui.label("radius");
+                    let mut centimetres = settings.pull_radius * 100.0;
+                    let field = egui::DragValue::new(&mut centimetres).range(0.0..=1000.0).speed(0.2).suffix(" cm");
+                    let field = ui.add(field);
+                    field.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::DragValue, true, "pull radius"));
+                    field.on_hover_text("How far along the stroke neighbours follow");
+                    settings.pull_radius = centimetres / 100.0;
+                }
+                Tool::Select | Tool::Erase => {
+                    ui.label(RichText::new(self.view.tool.description()).weak());
+                }
+            }
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                for shading in Shading::ALL.into_iter().rev() {
+                    let on = self.settings.shading == shading;
+                    let button = ui.add(egui::Button::selectable(on, shading.name()));
+                    if button.on_hover_text(shading.description()).clicked() {
+                        self.settings.shading = shading;
+                    }
+                }
+            });
+        });
+    }
+
+    fn status(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            match &self.view.message {
+                Some(message) => {
+                    let text = RichText::new(&message.text);
+                    let text = if message.is_error { text.color(ui.visuals().error_fg_color) } else { text };
+                    ui.add(egui::Label::new(text).truncate());
+                }
+                None => {
+                    ui.label(RichText::new(self.view.tool.description()).weak());
+                }
+            }
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| self.progress(ui));
+        });
+    }
+
+    fn progress(&mut self, ui: &mut Ui) {
+        if let Some((done, planned)) = self.results.progress() {
+            if ui.button("Stop").on_hover_text("Stop evaluating (Esc)").clicked() {
+                self.commands.push(ViewCommand::Stop.into());
+            }
+            #[expect(clippy::cast_precision_loss, reason = "a few nodes")]
+            let share = done as f32 / planned.max(1) as f32;
+            ui.add(egui::ProgressBar::new(share).desired_width(120.0).text(format!("{done} of {planned}")));
+        } else if let Some(evaluation) = self.results.evaluation() {
+            let failures = evaluation.failures().count();
+            if failures > 0 {
+                let text = format!("{failures} node(s) failed");
+                if ui.link(RichText::new(text).color(ui.visuals().error_fg_color)).clicked() {
+                    dock::reveal(&mut self.tree, Pane::Problems);
+                }
+            } else {
+                let time = crate::canvas::face::time(evaluation.duration);
+                ui.label(RichText::new(format!("{} nodes in {time}", evaluation.outcomes().len())).weak());
+            }
+        }
+    }
+}
+
+/// The graphs of a folder, or, where it has none, of the folder `graphs` in it: the examples, in a copy of the repository.
+fn examples(folder: &std::path::Path) -> Vec<std::path::PathBuf> {
+    let graphs = |folder: &std::path::Path| {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        let mut graphs: Vec<_> = entries.map(|entry| entry.path()).filter(|path| is_graph(path)).collect();
+        graphs.sort();
+        graphs
+    };
+    let here = graphs(folder);
+    if here.is_empty() { graphs(&folder.join("graphs")) } else { here }
+}
+
+/// The panels with what they show.
+struct Panes<'a> {
+    context: PanelContext<'a>,
+    canvas: &'a mut Canvas,
+    views: &'a mut [ViewPane; 4],
+    inspector: &'a mut Inspector,
+    palette: &'a mut Palette,
+    data: &'a mut Data,
+    graphics: Graphics,
+    hovered: Option<Pane>,
+}
+
+impl Panes<'_> {
+    fn show(&mut self, ui: &mut Ui, pane: &mut Pane) {
+        let rect = ui.available_rect_before_wrap();
+        if ui.rect_contains_pointer(rect) {
+            self.hovered = Some(*pane);
+        }
+        let ui = &mut ui.new_child(egui::UiBuilder::new().max_rect(rect).id_salt(pane.name()));
+        ui.set_clip_rect(rect.intersect(ui.clip_rect()));
+        let context = &mut self.context;
+        match pane {
+            Pane::View(direction) => {
+                if let Some(view) = self.views.iter_mut().find(|view| view.camera.direction == *direction) {
+                    view.show(ui, context, self.graphics);
+                }
+            }
+            Pane::Canvas => {
+                self.canvas.show(ui, context);
+                let dropped = ui.interact(rect, ui.id().with("drop"), egui::Sense::hover());
+                if let Some(kind) = dropped.dnd_release_payload::<DraggedKind>()
+                    && let Some(pointer) = ui.input(|i| i.pointer.latest_pos())
+                {
+                    let at = self.canvas.canvas_point(pointer);
+                    context.ask(GraphCommand::Add { kind: kind.0.clone(), at, link: NewLink::None });
+                }
+            }
+            _ => {
+                ui.painter().rect_filled(rect, 0.0, ui.visuals().panel_fill);
+                egui::Frame::new().inner_margin(egui::Margin::same(8)).show(ui, |ui| match pane {
+                    Pane::Inspector => self.inspector.show(ui, context),
+                    Pane::Palette => {
+                        let middle =
+                            self.canvas.rect.map_or([0.0, 0.0], |rect| self.canvas.canvas_point(rect.center()));
+                        self.palette.show(ui, context, middle);
+                    }
+                    Pane::Problems => problems::show(ui, context),
+                    Pane::History => history::show(ui, context),
+                    Pane::Performance => performance::show(ui, context),
+                    Pane::Data => self.data.show(ui, context),
+                    Pane::Help | Pane::View(_) | Pane::Canvas => help::show(ui, context),
+                });
+            }
+        }
+    }
+}
+
+impl Behavior<Pane> for Panes<'_> {
+    fn pane_ui(&mut self, ui: &mut Ui, _: TileId, pane: &mut Pane) -> UiResponse {
+        self.show(ui, pane);
+        UiResponse::None
+    }
+
+    fn tab_title_for_pane(&mut self, pane: &Pane) -> egui::WidgetText {
+        match pane {
+            Pane::Problems => {
+                let count = problems::entries(&self.context).len();
+                if count == 0 { "Problems".into() } else { format!("Problems ({count})").into() }
+            }
+            _ => pane.name().into(),
+        }
+    }
+
+    fn is_tab_closable(&self, _: &Tiles<Pane>, _: TileId) -> bool {
+        true
+    }
+
+    fn simplification_options(&self) -> SimplificationOptions {
+        // A view without a tab says itself what it is.
+        SimplificationOptions { all_panes_must_have_tabs: false, ..SimplificationOptions::default() }
+    }
+}

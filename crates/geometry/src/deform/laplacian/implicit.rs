@@ -1,0 +1,258 @@
+//! The first system (thesis 2.8): positions whose gradients agree with each other and with the handles.
+
+use glam::{DMat3, DVec3};
+use rayon::prelude::*;
+
+use super::error::{BindError, DeformError};
+use super::patch::Patch;
+use super::rows::{Rows, lower_triangle};
+use super::stencil::Gradients;
+use crate::linear_solver::Cholesky;
+
+/// The system (2.8), factored. Unknown are the displacements of the free vertices against the mesh whose degenerate
+/// vertices are displaced: in these, a mesh that nobody moves has no right-hand side at all.
+#[derive(Debug)]
+pub(super) struct Implicit {
+    gradients: Gradients,
+    /// Of each free vertex the row `sqrt(A_i) (D(v_i) - M_i delta_i)` of (2.6), `M_i delta_i` only where `M_i` is not
+    /// prescribed. With `sqrt(A_i)` it has no unit, as the rows of (2.7) have none.
+    laplacians: Rows<f64>,
+    /// Of each free vertex `sqrt(A_i) delta_i`, for prescribed gradients.
+    coordinates: Vec<DVec3>,
+    /// Pairs of (2.7) at each vertex with a row: all vertices within two edges, one of both free.
+    pairs: Rows<()>,
+    /// Vertices with a pair whose gradients feel held vertices: the only ones to disagree while the free ones rest.
+    rim: Vec<u32>,
+    factor: Cholesky,
+}
+
+impl Implicit {
+    /// `weights` and `areas` are those of [`Patch::weights`].
+    pub fn new(
+        patch: &Patch,
+        gradients: Gradients,
+        weights: &[Vec<f64>],
+        areas: &[f64],
+        progress: &dyn Fn(f64) -> bool,
+    ) -> Result<Self, BindError> {
+        let go_on = |done: f64| if progress(done) { Ok(()) } else { Err(BindError::Stopped) };
+        go_on(0.0)?;
+        let free = patch.free;
+        let made: Vec<(Vec<(u32, f64)>, DVec3)> = (0..free)
+            .into_par_iter()
+            .map(|vertex| laplacian_row(patch, &gradients, vertex, &weights[vertex], areas[vertex]))
+            .collect();
+        let (rows, coordinates): (Vec<_>, Vec<_>) = made.into_iter().unzip();
+        let laplacians = Rows::collect(rows);
+        go_on(0.1)?;
+        let pairs: Vec<Vec<(u32, ())>> = (0..patch.len())
+            .into_par_iter()
+            .map(|vertex| {
+                if !gradients.wanted[vertex] {
+                    return Vec::new();
+                }
+                let others = patch.adjacency.within(vertex as u32, 2).into_iter();
+                others.filter(|other| vertex < free || (*other as usize) < free).map(|other| (other, ())).collect()
+            })
+            .collect();
+        let pairs = Rows::collect(pairs);
+        let feels = |vertex: usize| {
+            !gradients.wanted[vertex] || gradients.rows.columns(vertex).last().is_some_and(|k| *k as usize >= free)
+        };
+        let feels: Vec<bool> = (0..patch.len()).map(feels).collect();
+        let disagrees = |v: &u32| {
+            let others = pairs.columns(*v as usize);
+            !others.is_empty() && (feels[*v as usize] || others.iter().any(|other| feels[*other as usize]))
+        };
+        let rim: Vec<u32> = (0..patch.len() as u32).filter(disagrees).collect();
+        go_on(0.2)?;
+        let differences = differences(&gradients.rows, &pairs, free);
+        go_on(0.3)?;
+        let gradient_columns = gradients.rows.transposed(free);
+        let laplacian_columns = laplacians.transposed(free);
+        let matrix = lower_triangle(
+            free,
+            |_, column| {
+                column.add_product(&gradient_columns, &differences, |a: DVec3, b: DVec3| a.dot(b));
+                column.add_product(&laplacian_columns, &laplacians, |a, b| a * b);
+            },
+            &|| go_on(0.4),
+        )?;
+        drop((differences, gradient_columns, laplacian_columns));
+        go_on(0.6)?;
+        let factor = Cholesky::factor(&matrix)?;
+        go_on(1.0)?;
+        Ok(Self { gradients, laplacians, coordinates, pairs, rim, factor })
+    }
+
+    /// Degenerate vertices displaced, and vertices whose gradient takes in more than one ring.
+    pub fn degenerate(&self) -> (usize, usize) {
+        (self.gradients.displaced, self.gradients.widened)
+    }
+
+    /// Bytes of the factor.
+    pub fn bytes(&self) -> usize {
+        self.factor.bytes()
+    }
+
+    /// Solves for where the handles are. `displacements` of the held vertices are given, those of the free ones are found;
+    /// `prescribed` are the gradients less the identity, used where one is held.
+    ///
+    /// With `refine` the residual of all rows is solved for once more, which takes as long again and makes up for what
+    /// the square of the rows' condition loses.
+    pub fn solve(
+        &self,
+        patch: &Patch,
+        displacements: &mut [DVec3],
+        prescribed: &(dyn Fn(usize) -> DMat3 + Sync),
+        refine: bool,
+    ) -> Result<(), DeformError> {
+        displacements[..patch.free].fill(DVec3::ZERO);
+        for again in 0..1 + usize::from(refine) {
+            let mut sides = self.descent(patch, displacements, prescribed, again == 0);
+            self.factor.solve_points(&mut sides)?;
+            for (displacement, more) in displacements.iter_mut().zip(sides) {
+                *displacement += more;
+            }
+        }
+        if displacements.iter().all(|u| u.is_finite()) { Ok(()) } else { Err(DeformError::Overflow) }
+    }
+
+    /// The deformation gradients less the identity at all vertices that have one.
+    pub fn gradients(&self, displacements: &[DVec3], prescribed: &(dyn Fn(usize) -> DMat3 + Sync)) -> Vec<DMat3> {
+        let rows = &self.gradients.rows;
+        let of = |vertex: usize| {
+            if !self.gradients.wanted[vertex] {
+                return prescribed(vertex);
+            }
+            // Sums over the three columns, written out: this is what dragging waits for.
+            let (mut x, mut y, mut z) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
+            for (k, c) in rows.row(vertex) {
+                let u = displacements[k];
+                x += u * c.x;
+                y += u * c.y;
+                z += u * c.z;
+            }
+            DMat3::from_cols(x, y, z)
+        };
+        (0..rows.len()).into_par_iter().with_min_len(1024).map(of).collect()
+    }
+
+    /// The positions of the mesh itself where the displacements are those of the displaced one (below 2.9).
+    pub fn undisplace(&self, patch: &Patch, gradients: &[DMat3], displacements: &[DVec3]) -> Vec<DVec3> {
+        let shifted = &self.gradients.points;
+        (0..patch.len())
+            .map(|v| patch.points[v] + displacements[v] + gradients[v] * (patch.points[v] - shifted[v]))
+            .collect()
+    }
+
+    /// Minus half the derivative of the sum of squares after the positions of the free vertices; `at_rest` where these are
+    /// not displaced.
+    fn descent(
+        &self,
+        patch: &Patch,
+        displacements: &[DVec3],
+        prescribed: &(dyn Fn(usize) -> DMat3 + Sync),
+        at_rest: bool,
+    ) -> Vec<DVec3> {
+        let gradients = self.gradients(displacements, prescribed);
+        let mut sides = vec![DVec3::ZERO; patch.free];
+        let disagreement = |vertex: usize| {
+            let others = self.pairs.columns(vertex);
+            let sum = others.iter().fold(DMat3::ZERO, |sum, other| sum + gradients[*other as usize]);
+            gradients[vertex] * others.len() as f64 - sum
+        };
+        let mut add = |vertex: usize, disagreement: &DMat3| {
+            for (k, c) in self.gradients.rows.row(vertex) {
+                if k < patch.free {
+                    sides[k] -= *disagreement * c;
+                }
+            }
+        };
+        if at_rest {
+            self.rim.iter().for_each(|vertex| add(*vertex as usize, &disagreement(*vertex as usize)));
+        } else {
+            let all = (0..self.pairs.len()).into_par_iter().with_min_len(1024).map(disagreement);
+            all.collect::<Vec<_>>().iter().enumerate().for_each(|(vertex, d)| add(vertex, d));
+        }
+        for (vertex, (gradient, coordinate)) in gradients.iter().zip(&self.coordinates).enumerate() {
+            let mut residual: DVec3 = self.laplacians.row(vertex).map(|(k, r)| displacements[k] * r).sum();
+            if !self.gradients.wanted[vertex] {
+                residual -= *gradient * *coordinate;
+            }
+            for (k, r) in self.laplacians.row(vertex) {
+                if k < patch.free {
+                    sides[k] -= residual * r;
+                }
+            }
+        }
+        sides
+    }
+}
+
+/// The row of (2.6) and `sqrt(A) delta`, with the weights of the mesh and the positions of the displaced one.
+fn laplacian_row(
+    patch: &Patch,
+    gradients: &Gradients,
+    vertex: usize,
+    weights: &[f64],
+    area: f64,
+) -> (Vec<(u32, f64)>, DVec3) {
+    let ring = patch.adjacency.ring(vertex as u32);
+    if area <= 0.0 {
+        return (Vec::new(), DVec3::ZERO);
+    }
+    let scale = 1.0 / area.sqrt();
+    let own = gradients.points[vertex];
+    let arms = ring.iter().zip(weights).map(|(k, w)| *w * (own - gradients.points[*k as usize]));
+    let coordinate = scale * arms.sum::<DVec3>();
+    let total: f64 = weights.iter().sum();
+    let mut entries: Vec<(u32, f64)> = ring.iter().zip(weights).map(|(k, w)| (*k, -scale * w)).collect();
+    entries.push((vertex as u32, scale * total));
+    if gradients.wanted[vertex] {
+        entries.extend(gradients.rows.row(vertex).map(|(k, c)| (k as u32, -c.dot(coordinate))));
+    }
+    entries.sort_unstable_by_key(|(k, _)| *k);
+    entries.dedup_by(|from, to| {
+        let same = from.0 == to.0;
+        if same {
+            to.1 += from.1;
+        }
+        same
+    });
+    (entries, coordinate)
+}
+
+/// `sum_j (M_i - M_j)` over the pairs of each vertex, as rows over the free vertices.
+fn differences(rows: &Rows<DVec3>, pairs: &Rows<()>, free: usize) -> Rows<DVec3> {
+    // A value for each column, the row that last used it, and the columns of this row.
+    let empty = || (vec![DVec3::ZERO; free], vec![u32::MAX; free], Vec::<u32>::new());
+    let row = |(values, used, columns): &mut (Vec<DVec3>, Vec<u32>, Vec<u32>), vertex: usize| {
+        columns.clear();
+        let mut add = |column: usize, value: DVec3| {
+            if column >= free {
+                return;
+            }
+            if used[column] == vertex as u32 {
+                values[column] += value;
+            } else {
+                used[column] = vertex as u32;
+                values[column] = value;
+                columns.push(column as u32);
+            }
+        };
+        let others = pairs.columns(vertex);
+        for (column, value) in rows.row(vertex) {
+            add(column, value * others.len() as f64);
+        }
+        for other in others {
+            for (column, value) in rows.row(*other as usize) {
+                add(column, -value);
+            }
+        }
+        columns.sort_unstable();
+        columns.iter().map(|column| (*column, values[*column as usize])).collect::<Vec<_>>()
+    };
+    let made = (0..rows.len()).into_par_iter().with_min_len(4096).map_init(empty, row);
+    Rows::collect(made.collect())
+}

@@ -1,0 +1,103 @@
+//! Vertices by where they are on the surface: parts, borders, distances along it, directions.
+
+use glam::DVec3;
+
+use super::shape::ramp;
+use super::{SelectError, Selection};
+use crate::mesh::geodesic::{Geodesics, starts_at};
+use crate::mesh::measure::vector_area;
+use crate::mesh::{Adjacency, Mesh, Topology};
+
+/// The connected component with the vertex nearest to a point. Loose vertices are left out.
+///
+/// # Errors
+/// [`SelectError`] where the point is not finite or the mesh has no polygons.
+pub fn component_nearest(mesh: &Mesh, point: DVec3) -> Result<Selection, SelectError> {
+    let adjacency = Adjacency::along_sides(mesh);
+    let used = (0..adjacency.vertices()).filter(|v| !adjacency.ring(*v as u32).is_empty());
+    let nearest = nearest_of(mesh, point, used)?.ok_or(SelectError::NoPolygons)?;
+    let (component, _) = adjacency.components();
+    Ok(Selection::by(adjacency.vertices(), |v| component[v] == component[nearest]))
+}
+
+/// The boundary loop with the vertex nearest to a point.
+///
+/// # Errors
+/// [`SelectError`] where the point is not finite or the mesh has no boundary.
+pub fn boundary_loop_nearest(mesh: &Mesh, point: DVec3) -> Result<Selection, SelectError> {
+    let loops = Topology::new(mesh).boundary_loops();
+    let vertices = loops.iter().flatten().map(|v| *v as usize);
+    let nearest = nearest_of(mesh, point, vertices)?.ok_or(SelectError::NoBoundary)?;
+    let mut on = vec![false; mesh.positions().len()];
+    if let Some(found) = loops.iter().find(|l| l.contains(&(nearest as u32))) {
+        found.iter().for_each(|v| on[*v as usize] = true);
+    }
+    Ok(Selection::by(on.len(), |v| on[v]))
+}
+
+/// Weight 1 within `distance` metres along the surface from the points of it nearest to `points`, falling to 0 over
+/// `falloff` metres beyond; see [`Geodesics::distances`].
+///
+/// # Errors
+/// [`SelectError`] for numbers that are not finite or negative, no point, and a mesh without polygons.
+pub fn geodesic(mesh: &Mesh, points: &[DVec3], distance: f64, falloff: f64) -> Result<Selection, SelectError> {
+    for (what, value) in [("distance", distance), ("falloff", falloff)] {
+        if !value.is_finite() {
+            return Err(SelectError::NotFinite { what });
+        }
+        if value < 0.0 {
+            return Err(SelectError::Negative { what, value });
+        }
+    }
+    if points.iter().any(|p| !p.is_finite()) {
+        return Err(SelectError::NotFinite { what: "point" });
+    }
+    if points.is_empty() {
+        return Err(SelectError::NoPoint);
+    }
+    let starts = starts_at(mesh, points).map_err(|_| SelectError::NoPolygons)?;
+    let found = Geodesics::new(mesh).distances(&starts, distance + falloff);
+    Ok(Selection::weighted(found.len(), |v| ramp(found[v] - distance, falloff)))
+}
+
+/// Weight 1 where the normal of a vertex, weighted by the areas around it, is within `angle` radians of a direction,
+/// falling to 0 over `falloff` radians beyond. Vertices without a normal have weight 0.
+///
+/// # Errors
+/// [`SelectError`] for numbers that are not finite or negative and a direction of length 0.
+pub fn by_normal(mesh: &Mesh, direction: DVec3, angle: f64, falloff: f64) -> Result<Selection, SelectError> {
+    for (what, value) in [("angle", angle), ("falloff", falloff)] {
+        if !value.is_finite() {
+            return Err(SelectError::NotFinite { what });
+        }
+        if value < 0.0 {
+            return Err(SelectError::Negative { what, value });
+        }
+    }
+    if !direction.is_finite() {
+        return Err(SelectError::NotFinite { what: "direction" });
+    }
+    let direction = direction.try_normalize().ok_or(SelectError::NoDirection)?;
+    let mut normals = vec![DVec3::ZERO; mesh.positions().len()];
+    for corners in mesh.polygons() {
+        let area = vector_area(corners.iter().map(|v| mesh.positions()[*v as usize]));
+        corners.iter().for_each(|v| normals[*v as usize] += area);
+    }
+    let weight = |vertex: usize| {
+        let normal = normals[vertex];
+        if normal == DVec3::ZERO {
+            return 0.0;
+        }
+        ramp(normal.cross(direction).length().atan2(normal.dot(direction)) - angle, falloff)
+    };
+    Ok(Selection::weighted(normals.len(), weight))
+}
+
+/// Of some vertices the one nearest to a point, of equal ones the first.
+fn nearest_of(mesh: &Mesh, point: DVec3, vertices: impl Iterator<Item = usize>) -> Result<Option<usize>, SelectError> {
+    if !point.is_finite() {
+        return Err(SelectError::NotFinite { what: "point" });
+    }
+    let distance = |v: &usize| mesh.positions()[*v].distance_squared(point);
+    Ok(vertices.min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b))))
+}

@@ -1,0 +1,98 @@
+//! The saved graphs of the primitive deformer: how far outlines are from their sketches, and what the surfaces are.
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::disallowed_methods,
+    reason = "a test that panics fails, and its files are its own"
+)]
+
+mod graphs;
+
+use glam::DVec3;
+use graphs::Saved;
+use maquette_geometry::curve::closest;
+use maquette_geometry::mesh::{Mesh, check, measure};
+use maquette_graph::{Evaluation, Evaluator, OutcomeState};
+use maquette_nodes::wire;
+
+fn figure(saved: &Saved, evaluation: &Evaluation, node: &str, name: &str) -> f64 {
+    match &evaluation.outcome(saved.node(node)).unwrap().state {
+        OutcomeState::Done { report, .. } => report.figure(name).unwrap_or_else(|| panic!("{node}.{name}")).value,
+        other => panic!("{node}: {other:?}"),
+    }
+}
+
+/// The mesh of a node, which must be one sound, closed shell that faces outwards.
+fn sound<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str) -> &'a Mesh {
+    let mesh = &evaluation.value::<wire::Mesh>(saved.node(node), "mesh").unwrap().0;
+    let found = check(mesh);
+    assert!(found.is_sound() && found.closed && found.shells == 1, "{node}: {found}");
+    assert!(measure::signed_volume(mesh) > 0.0);
+    mesh
+}
+
+fn extent(mesh: &Mesh) -> DVec3 {
+    let (low, high) = measure::bounds(mesh).unwrap();
+    high - low
+}
+
+/// A part from a cylinder, in two views at once: its surface's extent, and the largest distance of its outline from the
+/// strokes in percent of their diagonal.
+fn assert_limb(name: &str, result: &str, wanted: DVec3, percent: f64) {
+    let saved = Saved::load(name);
+    let evaluation = saved.evaluate(
+        &mut Evaluator::default(),
+        &[result, "outlines", "stroke lines", "fit", "deformed", "front strokes", "side strokes"],
+    );
+    let mesh = sound(&saved, &evaluation, "fit");
+    assert!(extent(mesh).distance(wanted) < 1e-3, "{name}: {}", extent(mesh));
+    let off = figure(&saved, &evaluation, "fit", "largest-percent");
+    assert!(off < percent && figure(&saved, &evaluation, "fit", "mean-percent") < 0.002, "{name}: {off} percent");
+    assert!(figure(&saved, &evaluation, "deformed", "largest-overshoot") < 1e-12);
+    // Sections touch the strokes, and the deformation is a true one.
+    assert!(figure(&saved, &evaluation, "deformed", "largest-move") > 0.03);
+    let sections = &evaluation.value::<wire::Sections>(saved.node("deformed"), "sections").unwrap().0;
+    assert_eq!(sections.rails(), [0, 16, 32, 48]);
+    for (view, columns) in [("front", [0, 32]), ("side", [16, 48])] {
+        let strokes = &evaluation.value::<wire::Curves>(saved.node(&format!("{view} strokes")), "curves").unwrap().0;
+        let depth = strokes[0].start();
+        let seen = |p: DVec3| if view == "front" { p.with_z(depth.z) } else { p.with_x(depth.x) };
+        for section in sections.iter() {
+            for column in columns {
+                let near = strokes.iter().map(|stroke| closest(stroke, seen(section[column])).distance);
+                assert!(near.fold(f64::MAX, f64::min) < 1e-12, "{name}, {view}");
+            }
+        }
+    }
+    // Both outlines come out.
+    let outlines = &evaluation.value::<wire::Curves>(saved.node("fit"), "outlines").unwrap().0;
+    let names: Vec<_> = outlines.iter().map(maquette_geometry::curve::Curve::name).collect();
+    assert_eq!(names, ["front outline", "side outline"]);
+}
+
+#[test]
+fn the_torso_is_a_cylinder_in_the_silhouettes_of_a_body() {
+    assert_limb("torso", "torso", DVec3::new(0.3454, 0.4699, 0.2258), 0.05);
+}
+
+#[test]
+fn the_leg_is_deformed_in_both_views_at_once() {
+    assert_limb("leg-deformed", "leg", DVec3::new(0.2098, 0.684, 0.1845), 0.02);
+}
+
+#[test]
+fn the_sea_star_is_an_ellipsoid_in_one_outline() {
+    let saved = Saved::load("sea-star");
+    let evaluation =
+        saved.evaluate(&mut Evaluator::default(), &["sea star", "stroke", "fit", "deformed", "calm outline"]);
+    let mesh = sound(&saved, &evaluation, "fit");
+    let size = extent(mesh);
+    // As thick as the ellipsoid, and six times as wide.
+    assert!((size.z - 0.052).abs() < 1e-3 && size.x > 0.27 && size.y > 0.26, "{size}");
+    let off = figure(&saved, &evaluation, "fit", "largest-percent");
+    assert!(off < 0.05, "{off} percent");
+    let sections = &evaluation.value::<wire::Sections>(saved.node("deformed"), "sections").unwrap().0;
+    assert!(sections.is_pole(0) && sections.is_pole(24));
+    let drawn = &evaluation.value::<wire::Curves>(saved.node("calm outline"), "curves").unwrap().0[0];
+    assert!(sections.section(12).iter().all(|p| closest(drawn, p.with_z(0.0)).distance < 1e-12));
+}
