@@ -298,7 +298,7 @@ fn picture() -> Vec<u8> {
     });
     let length = u16::try_from(rows.len()).unwrap();
     let stored =
-        [&[0x78, 1, 1][..], &length.to_le_bytes(), &(!length).to_le_bytes(), &rows, &((b << 16) | a).to_be_bytes()];
+        [&[0x78_u8, 1, 1][..], &length.to_le_bytes(), &(!length).to_le_bytes(), &rows, &((b << 16) | a).to_be_bytes()];
     let head = [0, 0, 0, 16, 0, 0, 0, 16, 8, 0, 0, 0, 0];
     [&b"\x89PNG\r\n\x1a\n"[..], &chunk(b"IHDR", &head), &chunk(b"IDAT", &stored.concat()), &chunk(b"IEND", b"")]
         .concat()

@@ -193,7 +193,7 @@ pub(crate) fn kind() -> NodeKind {
 mod tests {
     use super::*;
     use maquette_graph::Literal;
-    use maquette_graph::harness::Harness;
+    use maquette_graph::harness::{Harness, TrialError};
 
     const SOLE: &[u8] = include_bytes!("../../../../graphs/data/pictures/sole.png");
 
@@ -203,8 +203,10 @@ mod tests {
         for (input, literal) in settings {
             harness = harness.set(input, literal.clone());
         }
-        let error = harness.run().unwrap_err();
-        (error.port().map(str::to_owned), error.to_string())
+        match harness.run().unwrap_err() {
+            TrialError::Failed(failure) => (failure.port, failure.message),
+            stopped => panic!("{stopped}"),
+        }
     }
 
     #[test]

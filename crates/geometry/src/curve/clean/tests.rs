@@ -67,11 +67,8 @@ fn strokes_over_one_another_become_one_whichever_way_they_run() {
 #[test]
 fn pieces_that_go_on_are_chained_and_a_gap_is_bridged() {
     let piece = |name: &str, range, phase| stroke(name, range, arm, sway(0.004, phase));
-    let pieces = [
-        piece("middle", [0.3, 0.72], 0.0),
-        piece("first", [0.0, 0.4], 1.0).reversed(),
-        piece("last", [0.74, 1.0], 2.0),
-    ];
+    let pieces =
+        [piece("middle", [0.3, 0.8], 0.0), piece("first", [0.0, 0.4], 1.0).reversed(), piece("last", [0.82, 1.0], 2.0)];
     let lines = clean(&pieces, &CLEANING).unwrap();
     assert_eq!(lines.len(), 1, "{lines:?}");
     let length = ArcLength::of(&lines[0].curve).length();

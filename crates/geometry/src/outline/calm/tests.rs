@@ -53,7 +53,7 @@ fn the_first_point_stays_first_and_specks_keep_their_size() {
         drawn(80, 60, |x, y| (x - 30.0).abs() < 20.0 && (y - 30.0).abs() < 20.0 || (x - 70.0).hypot(y - 30.0) < 3.0);
     let found = trace(&mask, &Tracing { keep: Keep::All, ..Tracing::default() }).unwrap();
     let calm = calmed(&found[0].curve, &Calming { tolerance: 0.0, ..CALMING }).unwrap();
-    assert!(calm.start().distance(found[0].curve.start()) < 1.0, "{} {}", calm.start(), found[0].curve.start());
+    assert!(calm.start().distance(found[0].curve.start()) < 2.0, "{} {}", calm.start(), found[0].curve.start());
     let speck = calmed(&found[1].curve, &Calming { wave: 500.0, tolerance: 0.0, corner_angle: 3.0 }).unwrap();
     let area = speck.area_vector().length();
     assert!((area - found[1].area).abs() < 0.05 * area, "{area} {}", found[1].area);
