@@ -20,6 +20,7 @@ draw leg-deformed leg-deformed 320x560
 draw sea-star sea-star 480x440
 draw forearm forearm 400x480 --wireframe
 draw hip hip 480x480
+draw from-image from-image 480x360
 draw open-strokes open-strokes 480x400 --curves
 for experiment in cantilever supported tyre; do
     "$maquette" render "graphs/experiments/$experiment.ron" -o "docs/pictures/$experiment.png" --size 640x400 --quiet \

@@ -116,6 +116,7 @@ fn every_saved_graph_is_tested_here() {
         saved,
         [
             "forearm",
+            "from-image",
             "from-template",
             "head",
             "hip",
@@ -144,6 +145,7 @@ fn no_saved_graph_has_a_node_without_use() {
         "leg",
         "legs",
         "forearm",
+        "from-image",
         "from-template",
         "hip",
         "open-strokes",

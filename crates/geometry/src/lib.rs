@@ -12,6 +12,7 @@ pub mod file_format;
 pub mod generate;
 pub mod linear_solver;
 pub mod mesh;
+pub mod outline;
 pub mod primitive;
 pub mod scene;
 pub mod sections;

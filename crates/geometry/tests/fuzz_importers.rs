@@ -15,8 +15,10 @@ use std::path::Path;
 
 use fuzz::Subject;
 use glam::DVec3;
+use maquette_geometry::file_format::picture::{self, Channel};
 use maquette_geometry::file_format::{ReadError, curves_json, gltf_read, gltf_write, obj, svg};
 use maquette_geometry::mesh::Mesh;
+use maquette_geometry::outline::{Keep, Tracing, trace};
 use maquette_geometry::scene::{Material, MeshItem, Scene};
 use peak_alloc::PeakAlloc;
 
@@ -61,6 +63,20 @@ fn read_curves(input: &[u8]) {
         // What was read is written and read back.
         let again = curves_json::read(&curves_json::write(&curves)).unwrap();
         assert_eq!(again.len(), curves.len());
+    }
+}
+
+fn read_picture(input: &[u8]) {
+    for channel in [Channel::Dark, Channel::Alpha] {
+        match picture::read(input, channel) {
+            Err(error) => assert!(!error.to_string().is_empty()),
+            Ok(mask) => {
+                assert_eq!(mask.values().len(), mask.width() * mask.height());
+                for outline in trace(&mask, &Tracing { keep: Keep::All, ..Tracing::default() }).unwrap_or_default() {
+                    assert!(outline.curve.is_closed() && outline.area >= 16.0);
+                }
+            }
+        }
     }
 }
 
@@ -217,6 +233,25 @@ const JSON_WORDS: [&str; 24] = [
     "é",
 ];
 
+const PICTURE_WORDS: [&str; 10] =
+    ["IHDR", "IDAT", "IEND", "PLTE", "tRNS", "iCCP", "acTL", "JFIF", "Exif\u{0}\u{0}", "\u{0}\u{0}\u{7}\u{0}"];
+
+/// A PNG and a JPEG of a dark disc.
+fn picture() -> Subject<'static> {
+    let disc = image::RgbaImage::from_fn(48, 40, |x, y| {
+        let off = (f64::from(x) - 20.0).hypot(f64::from(y) - 19.0);
+        image::Rgba([(off * 8.0) as u8, 30, 40, if off < 16.0 { 255 } else { 0 }])
+    });
+    let encoded = |picture: image::DynamicImage, format| {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        picture.write_to(&mut bytes, format).unwrap();
+        bytes.into_inner()
+    };
+    let opaque = image::DynamicImage::ImageRgba8(disc.clone()).into_rgb8();
+    let corpus = vec![encoded(disc.into(), image::ImageFormat::Png), encoded(opaque.into(), image::ImageFormat::Jpeg)];
+    Subject { name: "picture", corpus, dictionary: &PICTURE_WORDS, memory, read: read_picture, allocator: &ALLOCATOR }
+}
+
 fn gltf() -> Subject<'static> {
     let corpus = vec![gltf_write::glb(&scene()).unwrap(), gltf_write::gltf(&scene()).unwrap()];
     Subject { name: "gltf", corpus, dictionary: &GLTF_WORDS, memory, read: read_gltf, allocator: &ALLOCATOR }
@@ -272,13 +307,18 @@ fn fuzz_svg() {
 }
 
 #[test]
+fn fuzz_pictures() {
+    picture().fuzz();
+}
+
+#[test]
 fn fuzz_curves() {
     curves().fuzz();
 }
 
 #[test]
 fn what_fuzzing_found_stays_mended() {
-    for subject in [gltf(), obj(), svg(), curves()] {
+    for subject in [gltf(), obj(), svg(), curves(), picture()] {
         subject.hold_cases(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cases").join(subject.name));
     }
 }

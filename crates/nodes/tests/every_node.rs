@@ -261,7 +261,9 @@ fn sample(catalogue: &Catalogue, kind: &str, folder: &Path) -> (Graph, NodeId) {
             Some(LiteralKind::Strokes) => graph.set(node, &input.name, strokes()).unwrap(),
             Some(LiteralKind::File) => {
                 let reads = |extension: &str| input.extensions.iter().any(|e| e == extension);
+                let picture = picture();
                 let file: (&str, &[u8]) = match (reads("json"), reads("obj")) {
+                    _ if reads("png") => ("picture.png", &picture),
                     (true, _) => ("curves.json", br#"{"contours":[{"name":"a","points":[[0,0,0],[0,1,0]]}]}"#),
                     (false, true) => ("mesh.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"),
                     (false, false) => ("skeleton.gltf", SKELETON),
@@ -273,6 +275,33 @@ fn sample(catalogue: &Catalogue, kind: &str, folder: &Path) -> (Graph, NodeId) {
         }
     }
     (graph, node)
+}
+
+/// A PNG of 16 by 16 grey pixels, black in the middle on white: stored without compression.
+fn picture() -> Vec<u8> {
+    let sum = |bytes: &[u8]| {
+        !bytes.iter().fold(u32::MAX, |sum, byte| {
+            (0..8).fold(sum ^ u32::from(*byte), |sum, _| (sum >> 1) ^ (0xedb8_8320 * (sum & 1)))
+        })
+    };
+    let chunk = |name: &[u8], data: &[u8]| {
+        let body = [name, data].concat();
+        [&u32::try_from(data.len()).unwrap().to_be_bytes()[..], &body, &sum(&body).to_be_bytes()].concat()
+    };
+    let middle = |k: usize| (4..12).contains(&k);
+    let rows: Vec<u8> = (0..16)
+        .flat_map(|y| std::iter::once(0).chain((0..16).map(move |x| if middle(x) && middle(y) { 0 } else { 255 })))
+        .collect();
+    let (a, b) = rows.iter().fold((1_u32, 0_u32), |(a, b), byte| {
+        let a = (a + u32::from(*byte)) % 65_521;
+        (a, (b + a) % 65_521)
+    });
+    let length = u16::try_from(rows.len()).unwrap();
+    let stored =
+        [&[0x78, 1, 1][..], &length.to_le_bytes(), &(!length).to_le_bytes(), &rows, &((b << 16) | a).to_be_bytes()];
+    let head = [0, 0, 0, 16, 0, 0, 0, 16, 8, 0, 0, 0, 0];
+    [&b"\x89PNG\r\n\x1a\n"[..], &chunk(b"IHDR", &head), &chunk(b"IDAT", &stored.concat()), &chunk(b"IEND", b"")]
+        .concat()
 }
 
 fn strokes() -> Literal {
@@ -414,7 +443,7 @@ fn spoilers(catalogue: &Catalogue, input: &maquette_graph::InputSpec) -> Vec<(St
             .into()
         }
         Some(LiteralKind::File) => {
-            let contents: [(&str, &[u8]); 8] = [
+            let contents: [(&str, &[u8]); 10] = [
                 ("empty.json", b""),
                 ("cut.json", b"{\"contours\":[{\"points\":[[0,0"),
                 ("none.json", b"{\"contours\":[]}"),
@@ -422,6 +451,8 @@ fn spoilers(catalogue: &Catalogue, input: &maquette_graph::InputSpec) -> Vec<(St
                 ("bad.glb", b"glTF\x02\0\0\0\xff\xff\xff\xff"),
                 ("bad.gltf", b"{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":7}}]}]}"),
                 ("bad.obj", b"v 0 0 0\nf 1 2 9\n"),
+                ("bad.png", b"\x89PNG\r\n\x1a\n\0\0\0\x0dIHDR\0\0"),
+                ("bad.jpg", b"\xff\xd8\xff\xe0\0\x10JFIF"),
                 ("wrong.txt", b"hello"),
             ];
             let mut ways = vec![literal(Literal::File(String::new())), literal(Literal::File("gone.json".to_owned()))];

@@ -365,3 +365,29 @@ fn silhouettes() {
     let report = deform(sections(11, true), strokes("", 0.5, 0.0)).run().unwrap();
     assert!(report.figure("largest-move").unwrap().value > 0.49 && report.warnings.is_empty());
 }
+
+#[test]
+fn clean_strokes() {
+    let run = |settings| Wiring {
+        kind: "clean-strokes",
+        links: vec![("curves", constant("drawn", rails([0, 1, 2, 3])))],
+        settings,
+    };
+    run(vec![("distance", Literal::Number(1e-5))]).blames("distance", "give a distance of at least");
+    let report = run(vec![]).run().unwrap();
+    assert!(report.figure("largest-spread").unwrap().value < 1e-6, "four rails far apart stay as they are");
+}
+
+#[test]
+fn simplify() {
+    let triangle = Curve::new("t", vec![DVec3::ZERO, DVec3::X, DVec3::ZERO, DVec3::Y], true).unwrap();
+    let run = |curve: Curve, tolerance: f64| Wiring {
+        kind: "simplify",
+        links: vec![("curves", constant("drawn", wire::Curves(vec![curve])))],
+        settings: vec![("tolerance", Literal::Number(tolerance))],
+    };
+    let report = run(ring("ring", 1.0, 0.0), 0.05).run().unwrap();
+    let points = report.figure("points").unwrap().value;
+    assert!((6.0..16.0).contains(&points), "{points}");
+    assert_eq!(run(triangle, 0.0).run().unwrap().figure("points").unwrap().value, 4.0);
+}

@@ -1,5 +1,5 @@
 //! Files as bytes: glTF, OBJ, PLY, SVG and curves as JSON, written from a [`Scene`](crate::scene::Scene) and read into
-//! meshes and curves. Nothing here opens a file.
+//! meshes and curves; PNG and JPEG pictures, read into masks whose outlines are traced. Nothing here opens a file.
 //!
 //! Coordinates are `f64` in memory and `f32` in glTF and PLY; OBJ and JSON keep every digit.
 
@@ -11,6 +11,7 @@ pub mod gltf_write;
 pub mod obj;
 mod output;
 mod pace;
+pub mod picture;
 pub mod ply;
 pub mod svg;
 

@@ -294,10 +294,10 @@ mod tests {
 
     #[test]
     fn what_cannot_be_seen_is_refused() {
-        let flat = Mesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], &[[0, 1, 2]]).unwrap();
+        let flat = Mesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y], [[0, 1, 2]]).unwrap();
         assert!((go(&flat, View::FRONT).unwrap().area - 0.5).abs() < 1e-15);
         assert_eq!(go(&flat, View::SIDE), Err(MeshSilhouetteError::Nothing { view: "side" }));
-        let far = Mesh::new(vec![DVec3::ZERO, DVec3::X * 1e200, DVec3::Y], &[[0, 1, 2]]).unwrap();
+        let far = Mesh::new(vec![DVec3::ZERO, DVec3::X * 1e200, DVec3::Y], [[0, 1, 2]]).unwrap();
         assert_eq!(go(&far, View::FRONT), Err(MeshSilhouetteError::TooLarge));
         let stopped = silhouette_of(&flat, View::FRONT, 0.0, &|_| false);
         assert_eq!(stopped, Err(MeshSilhouetteError::Cancelled));

@@ -4,3 +4,4 @@ pub(crate) mod import_curves;
 pub(crate) mod import_mesh;
 pub(crate) mod import_skeleton;
 pub(crate) mod sketch;
+pub(crate) mod trace_image;

@@ -175,12 +175,14 @@ fn beyond(axis: &Curve, point: DVec3) -> f64 {
     }
 }
 
-/// Whether the first section lies farther in a direction than the last one; of two equally far ones, whether it was
-/// given later.
+/// Whether the first section lies farther in a direction than the last one; of two equally far ones, whether it lies
+/// farther in +X, then +Y, then +Z, so that the order in which they are given does not matter; of two at one place,
+/// whether it was given later.
 fn runs_against(order: &[usize], stations: &[Station], towards: DVec3) -> bool {
     let (Some(&first), Some(&last)) = (order.first(), order.last()) else { return false };
     let unit = (towards / towards.abs().max_element()).normalize_or_zero();
-    let rise = (stations[last].centre - stations[first].centre).dot(unit);
+    let way = stations[last].centre - stations[first].centre;
     let size = stations[first].size.max(stations[last].size);
-    if rise.abs() > 1e-9 * size { rise < 0.0 } else { last < first }
+    let rises = [unit, DVec3::X, DVec3::Y, DVec3::Z].map(|axis| way.dot(axis));
+    rises.into_iter().find(|rise| rise.abs() > 1e-9 * size).map_or(last < first, |rise| rise < 0.0)
 }

@@ -1,0 +1,111 @@
+//! A first line through a group of strokes: the longest one, prolonged by those that go on beyond its ends.
+
+use glam::DVec3;
+
+use super::samples::{PER_DISTANCE, Samples};
+use super::{CleanError, Line};
+
+/// How far from the end of the line, in distances, a stroke may begin to prolong it.
+const GAP: f64 = 2.0;
+
+/// Length below which a line that comes back to its beginning is not closed, in distances.
+const SHORTEST_RING: f64 = 8.0;
+
+/// The stroke with which a line begins: the longest closed one, else the longest; the first of equal ones.
+pub(super) fn longest(strokes: &[&Samples]) -> usize {
+    let key = |k: &usize| (strokes[*k].closed, strokes[*k].length);
+    let longer = |a: &usize, b: &usize| {
+        let ((closed_a, length_a), (closed_b, length_b)) = (key(a), key(b));
+        closed_a.cmp(&closed_b).then(length_a.total_cmp(&length_b)).then(b.cmp(a))
+    };
+    (0..strokes.len()).max_by(longer).unwrap_or(0)
+}
+
+/// The first line of a group. None of it is averaged yet.
+pub(super) fn spine(
+    strokes: &[&Samples],
+    longest: usize,
+    distance: f64,
+    alike: f64,
+    go_on: &dyn Fn(f64) -> Result<(), CleanError>,
+) -> Result<Option<Line>, CleanError> {
+    let first = strokes[longest];
+    let Some(mut line) = Line::new(first.points.clone(), first.closed) else { return Ok(None) };
+    if first.closed {
+        return Ok(Some(line));
+    }
+    // Each turn prolongs the line by the stroke that leads farthest beyond an end, and so uses up that part of it.
+    for _ in 0..2 * strokes.len() {
+        let mut best: Option<(f64, bool, Vec<DVec3>)> = None;
+        for stroke in strokes.iter().filter(|stroke| !stroke.closed) {
+            go_on(0.0)?;
+            for at_end in [true, false] {
+                let Some(tail) = beyond(&line, stroke, at_end, distance, alike) else { continue };
+                let length = stroke.step * tail.len() as f64;
+                if best.as_ref().is_none_or(|best| length > best.0) {
+                    best = Some((length, at_end, tail));
+                }
+            }
+        }
+        let Some((_, at_end, tail)) = best else { break };
+        let mut points = line.points().to_vec();
+        if at_end {
+            points.extend(tail);
+        } else {
+            points.splice(0..0, tail.into_iter().rev());
+        }
+        match Line::new(points, false) {
+            Some(longer) => line = longer,
+            None => break,
+        }
+    }
+    Ok(Some(ring(&line, distance, alike).unwrap_or(line)))
+}
+
+/// The part of a stroke that leads beyond an end of the line, from there on; none where that is no longer than the
+/// distance, or begins too far away.
+fn beyond(line: &Line, stroke: &Samples, at_end: bool, distance: f64, alike: f64) -> Option<Vec<DVec3>> {
+    let length = line.length();
+    let (end, outward) = match at_end {
+        true => (line.point(length), line.direction(length, distance)),
+        false => (line.point(0.0), -line.direction(0.0, distance)),
+    };
+    let leads_away = |k: usize| {
+        let foot = line.foot(stroke.points[k], stroke.directions[k], alike, distance);
+        if at_end { foot.at > length } else { foot.at < 0.0 }
+    };
+    let order = |k: usize, forth: bool| if forth { stroke.last() - k } else { k };
+    // From either tip of the stroke back to the line.
+    [true, false].into_iter().find_map(|forth| {
+        let count = (0..=stroke.last()).take_while(|k| leads_away(order(*k, forth))).count();
+        if count == 0 {
+            return None;
+        }
+        let begin = order(count - 1, forth);
+        let heading = stroke.directions[begin] * if forth { 1.0 } else { -1.0 };
+        let tail: Vec<DVec3> = (0..count).rev().map(|k| stroke.points[order(k, forth)]).collect();
+        let far = stroke.step * count as f64 > distance * (1.0 + 1.0 / PER_DISTANCE);
+        let near = stroke.points[begin].distance(end) <= GAP * distance;
+        (far && near && heading.dot(outward) >= alike).then_some(tail)
+    })
+}
+
+/// The line closed, where its end lies beside its beginning and runs the same way.
+fn ring(line: &Line, distance: f64, alike: f64) -> Option<Line> {
+    let length = line.length();
+    let (end, direction) = (line.point(length), line.direction(length, distance));
+    let head = Line::new(line.points().iter().copied().take(line.points().len() / 3).collect(), false)?;
+    let foot = head.foot(end, direction, alike, distance);
+    let same_way = head.direction(foot.at, distance).dot(direction) >= alike;
+    // The end may stop short of the beginning by no more than the distance.
+    let near = foot.away <= distance && foot.at >= -distance && foot.at < head.length();
+    if !(near && same_way && length - foot.at >= SHORTEST_RING * distance) {
+        return None;
+    }
+    let first = line.points().iter().zip(0..).find(|(p, _)| {
+        let own = head.foot(**p, line.direction(0.0, distance), 0.0, distance);
+        own.at >= foot.at
+    });
+    let from = first.map_or(0, |(_, k)| k);
+    Line::new(line.points()[from..].to_vec(), true)
+}
