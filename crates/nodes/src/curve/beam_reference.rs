@@ -133,10 +133,10 @@ mod tests {
         assert!((trial.report.figure("displacement").unwrap().value - 0.03).abs() < 1e-15);
         let tip = trial.value::<wire::Curve>("curve").unwrap().0.end();
         assert!(tip.distance(glam::DVec3::new(0.0, 0.03, 0.3)) < 1e-15, "{tip}");
-        let ring = Harness::new(&kind).set("case", choice("ring-elastica")).set("size", Literal::Number(0.1)).run();
+        let ring = Harness::new(&kind).set("case", choice("ring-elastica")).set("size", Literal::Number(0.15)).run();
         let ring = ring.unwrap();
         assert!(ring.value::<wire::Curve>("curve").unwrap().0.is_closed());
-        assert!(ring.report.figure("across").unwrap().value < -0.05);
+        assert!(ring.report.figure("across").unwrap().value < -0.05, "it shrinks by more than it grows");
     }
 
     #[test]

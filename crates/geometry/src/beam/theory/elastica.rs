@@ -62,8 +62,8 @@ impl Elastica {
             shape.tangents.push(DVec2::from_angle(state[0]));
         }
         let reached = match held {
-            Held::Cantilever => state[3].abs() <= 0.9 + 1e-9,
-            Held::Ring => (0.4 - 1e-9..=1.5 + 1e-9).contains(&(-state[2] * FRAC_PI_2)),
+            Held::Cantilever => state[3].abs() <= 0.85 + 1e-9,
+            Held::Ring => (0.4 - 1e-9..=1.4 + 1e-9).contains(&(-state[2] * FRAC_PI_2)),
         };
         reached.then_some(shape)
     }

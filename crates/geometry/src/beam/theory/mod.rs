@@ -79,8 +79,8 @@ pub enum TheoryError {
     },
     /// A shape that an elastica does not reach, or reaches only beyond what is computed.
     #[error(
-        "no elastica was found for this {what}: give less (a cantilever reaches 0.9 of its length to each side, the half \
-         axis of a ring 0.4 to 1.5 of its radius)"
+        "no elastica was found for this {what}: give less (a cantilever reaches 0.85 of its length to each side, the half \
+         axis of a ring 0.4 to 1.4 of its radius)"
     )]
     TooFar {
         /// `displacement` or `load`.
@@ -328,6 +328,16 @@ mod tests {
         assert!((far.across + 0.015 - 0.011577).abs() < 5e-7, "{}", far.across);
         assert!((far.bent[50] - DVec2::new(0.0, 0.011577)).length() < 5e-7 && (far.bent[0].x - 0.018).abs() < 1e-12);
         assert!((shape(Ring, 0.015, Given::Displacement(0.003)).across + 0.015 - 0.012245).abs() < 5e-7);
+    }
+
+    #[test]
+    fn an_elastica_is_found_as_far_as_promised() {
+        for (case, far) in
+            [(CantileverElastica, 0.85), (CantileverElastica, -0.85), (RingElastica, 0.4), (RingElastica, -0.6)]
+        {
+            let found = shape(case, 1.0, Given::Displacement(far));
+            assert!((found.displacement - far).abs() < 1e-9, "{case:?} {far}: {}", found.displacement);
+        }
     }
 
     #[test]
