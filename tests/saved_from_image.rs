@@ -10,7 +10,8 @@ mod graphs;
 
 use graphs::Saved;
 use maquette_geometry::curve::ArcLength;
-use maquette_geometry::mesh::{bounds, check};
+use maquette_geometry::mesh::check;
+use maquette_geometry::mesh::measure::bounds;
 use maquette_graph::{Evaluator, Literal};
 use maquette_nodes::wire;
 
