@@ -125,3 +125,20 @@ fn only_the_command_the_file_cache_and_the_graphs_file_touch_files() {
     let expected = ["evaluate/file_cache.rs", "file/disk.rs"].map(|file| format!("crates/graph/src/{file}").into());
     assert_eq!(touching, expected as [std::path::PathBuf; 2]);
 }
+
+#[test]
+fn one_file_names_the_back_end_of_sparse_matrices() {
+    let mut naming = Vec::new();
+    let mut folders = vec![std::path::PathBuf::from("crates/geometry/src")];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if std::fs::read_to_string(&path).unwrap().contains("faer::") {
+                naming.push(path);
+            }
+        }
+    }
+    assert_eq!(naming, [std::path::PathBuf::from("crates/geometry/src/linear_solver.rs")]);
+}

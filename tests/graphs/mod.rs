@@ -28,6 +28,7 @@ impl Saved {
     }
 
     /// Names of the results.
+    #[allow(dead_code, reason = "not every test that loads graphs asks")]
     pub fn results(&self) -> Vec<&str> {
         self.graph.results().iter().map(|id| self.graph.node(*id).unwrap().name()).collect()
     }

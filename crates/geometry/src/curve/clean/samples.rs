@@ -35,7 +35,7 @@ pub(super) fn of(strokes: &[Curve], distance: f64) -> Result<Vec<Samples>, Clean
     // Each stroke has a few points however short it is.
     let room = MAX_SAMPLES.saturating_sub(4 * strokes.len()) as f64;
     let needed = total * PER_DISTANCE / distance;
-    if !(needed <= room) {
+    if needed.is_nan() || needed > room {
         return Err(CleanError::TooFine { length: total, distance, least: total * PER_DISTANCE / room.max(1.0) });
     }
     Ok(strokes.iter().map(|stroke| sampled(stroke, distance)).collect())
