@@ -388,6 +388,6 @@ fn simplify() {
     };
     let report = run(ring("ring", 1.0, 0.0), 0.05).run().unwrap();
     let points = report.figure("points").unwrap().value;
-    assert!((6.0..16.0).contains(&points), "{points}");
+    assert!((6.0..=16.0).contains(&points), "{points}");
     assert_eq!(run(triangle, 0.0).run().unwrap().figure("points").unwrap().value, 4.0);
 }
