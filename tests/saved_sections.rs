@@ -127,7 +127,7 @@ fn open_strokes_are_fitted_and_a_surface_goes_through_them() {
 #[test]
 fn the_human_stands_on_65_sections() {
     let saved = Saved::load("human");
-    let evaluation = saved.evaluate(&mut Evaluator::default(), &["human", "left side", "fit", "joints", "trunk skin"]);
+    let evaluation = saved.evaluate(&mut Evaluator::default(), &["human", "trunk", "joints", "body", "both sides"]);
     let of = |node: &str, name: &str| figure(&saved, &evaluation, node, name);
     // The tolerances of the thesis, and its bound of 15 harmonics; hips and torso within 4 mm at the worst point.
     for (node, mean, most) in
