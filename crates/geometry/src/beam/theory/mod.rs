@@ -2,7 +2,7 @@
 //!
 //! Small deflections are those of Euler and Bernoulli, as in J. M. Gere and S. P. Timoshenko, *Mechanics of Materials*,
 //! appendix G (beams), and S. P. Timoshenko, *Strength of Materials II* (rings); large ones are solutions of the
-//! elastica, see [`elastica`]. Lengths are metres, loads newtons, bending stiffness `EI` is in N m^2. None of them knows
+//! elastica, see [`bend`]. Lengths are metres, loads newtons, bending stiffness `EI` is in N m^2. None of them knows
 //! stretching, shear or weight.
 
 mod elastica;
