@@ -15,9 +15,12 @@ struct Saved {
 
 fn load(name: &str) -> Saved {
     let catalogue = maquette_nodes::catalogue().expect("the catalogue is sound");
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("graphs/{name}.ron"));
-    let bytes = std::fs::read(path).expect("the graph is there");
-    let graph = file::from_bytes(&catalogue, &bytes).expect("the graph is readable").graph;
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("graphs");
+    let own = format!("{name}.ron");
+    let bytes = std::fs::read(folder.join(&own)).expect("the graph is there");
+    let read = |path: &Path| std::fs::read(folder.join(path)).map_err(|error| error.to_string());
+    let includes = file::Includes::new(&own, &read);
+    let graph = file::from_bytes_with(&catalogue, &bytes, &includes).expect("the graph is readable").graph;
     Saved { catalogue, graph }
 }
 
