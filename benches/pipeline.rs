@@ -136,7 +136,7 @@ fn edited(name: &str, [drawn, fitted]: [&str; 2], read: &[&str], index: i64) -> 
     for (from, output, to, input) in [
         (drawn, "curves", pick, "curves"),
         (pick, "curve", pulled, "curves"),
-        (pulled, "curves", edit, "contours"),
+        (pulled, "curves", edit, "contour"),
         (fitted, "sections", edit, "sections"),
     ] {
         graph.connect(catalogue, from, output, to, input).expect("the types fit");
