@@ -168,7 +168,7 @@ fn shapes(c: &mut Criterion) {
     measure(c, "detail-generator: between closed, 500 x 500", || {
         Harness::new(generator)
             .give_value("rails", four.clone())
-            .give_value("closed", rings.clone())
+            .give_value("profiles", rings.clone())
             .set("sections", Literal::Integer(500))
             .set("nodes", Literal::Integer(500))
             .set("snap", Literal::Number(1.0))
