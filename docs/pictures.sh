@@ -21,6 +21,12 @@ draw sea-star sea-star 480x440
 draw forearm forearm 400x480 --wireframe
 draw hip hip 480x480
 draw from-image from-image 480x360
+draw mouth mouth 480x360
+draw mouth mouth-curves 480x360 --curves --view front
+draw shoulder-cap shoulder-cap 480x480
+draw eye-socket eye-socket 480x400
+draw forearm-sheet forearm-sheet 360x480
+draw knee-guard knee-guard 360x480 --curves
 draw open-strokes open-strokes 480x400 --curves
 for experiment in cantilever supported tyre; do
     "$maquette" render "graphs/experiments/$experiment.ron" -o "docs/pictures/$experiment.png" --size 640x400 --quiet \

@@ -115,18 +115,23 @@ fn every_saved_graph_is_tested_here() {
     assert_eq!(
         saved,
         [
+            "eye-socket",
             "forearm",
+            "forearm-sheet",
             "from-image",
             "from-template",
             "head",
             "hip",
             "human",
+            "knee-guard",
             "leg",
             "leg-deformed",
             "legs",
+            "mouth",
             "neck",
             "open-strokes",
             "sea-star",
+            "shoulder-cap",
             "torso",
             "vest"
         ]
@@ -152,6 +157,11 @@ fn no_saved_graph_has_a_node_without_use() {
         "leg-deformed",
         "sea-star",
         "torso",
+        "mouth",
+        "shoulder-cap",
+        "eye-socket",
+        "forearm-sheet",
+        "knee-guard",
     ] {
         let saved = Saved::load(name);
         let used = saved.graph.upstream(&saved.graph.results());

@@ -24,6 +24,20 @@ impl Choices for Seam {
     ];
 }
 
+/// Which way the faces of the surface look that is made from the curves.
+#[derive(Clone, Copy, PartialEq)]
+enum Faces {
+    Outwards,
+    Inwards,
+}
+
+impl Choices for Faces {
+    const OPTIONS: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::Outwards, "outwards", "away from the axis: limbs, clothes"),
+        (Self::Inwards, "inwards", "towards the axis: what one looks into, such as eye sockets and mouths"),
+    ];
+}
+
 impl Seam {
     fn direction(self) -> glam::DVec3 {
         match self {
@@ -43,7 +57,7 @@ pub(crate) fn kind() -> NodeKind {
         "Orders curves into rails around an axis, all running the same way, and starts closed curves at rail 0.",
     );
     node.reference("thesis 6.4, Figure 6.11; paper 4.2");
-    let curves = node.input::<wire::Curves>("curves", "Rails (open) and the closed curves they run between, mixed.");
+    let curves = node.input::<wire::Curves>("curves", "Rails (open) and the closed curves they run between, mixed; closed ones in the order in which rails pass them.");
     let seam = node.choice::<Seam>("seam", "Where rail 0 and the seam lie.");
     let order = node.text(
         "order",
@@ -51,8 +65,12 @@ pub(crate) fn kind() -> NodeKind {
         "Order pinned by hand: names or numbers of the open curves, separated by commas; empty sorts by angle.",
     );
     let reverse = node.boolean("reverse", false, "Run the rails the other way: start and end change places.");
+    let faces = node.choice::<Faces>("faces", "Which way the surface looks that is made from the curves.");
     let rails = node.output::<wire::Curves>("rails", "Open curves in order around, all running the same way.");
-    let closed = node.output::<wire::Curves>("closed", "Closed curves, counter-clockwise, started at rail 0.");
+    let closed = node.output::<wire::Curves>(
+        "closed",
+        "Closed curves, counter-clockwise, started at rail 0; with faces inwards they run clockwise.",
+    );
     let ordered = node.table(
         "rails",
         &[
@@ -80,6 +98,7 @@ pub(crate) fn kind() -> NodeKind {
             seam: ports.choice(seam).direction(),
             order: order.collect(),
             reverse_run: ports.value(reverse),
+            inwards: ports.choice(faces) == Faces::Inwards,
         };
         let go_on = ports.progress_callback();
         let sorted = match sort_while(&ports.read(curves).0, &options, &|| go_on(0.5)) {

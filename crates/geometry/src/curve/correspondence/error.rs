@@ -15,16 +15,6 @@ pub enum SortError {
         /// Open curves found.
         found: usize,
     },
-    /// More than two closed curves.
-    #[error(
-        "{} closed curves to sort ({}), and rails run between 2 at most: leave the others to another sort",
-        curves.len(),
-        listed(curves)
-    )]
-    TooManyClosed {
-        /// What the closed curves are called.
-        curves: Vec<String>,
-    },
     /// Two open curves alone that neither cross nor share an end.
     #[error(
         "{first} and {second} stay {} apart (up to {} counts as meeting): draw them so that they cross or share an end, \

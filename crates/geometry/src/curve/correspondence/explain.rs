@@ -32,6 +32,8 @@ pub enum Decision {
     },
     /// The rails run the other way, as asked for.
     RunReversed,
+    /// Rails and closed curves were put the other way around in the end, so that faces look inwards.
+    Inwards,
     /// The axis about which rails are ordered.
     Axis {
         /// Unit vector along the rails.
@@ -87,6 +89,9 @@ impl fmt::Display for Decision {
             }
             Self::RunAsDrawn { curve } => write!(f, "rails run as {curve} was drawn"),
             Self::RunReversed => write!(f, "rails run the other way, as asked for"),
+            Self::Inwards => {
+                write!(f, "faces look inwards, as asked for: behind rail 0 the rails come in the opposite order")
+            }
             Self::Axis { axis, source } => {
                 let source = match source {
                     AxisSource::Rails => "from the starts of the rails to their ends",

@@ -3,7 +3,7 @@
 //!
 //! The order of work: open curves become rails that all run the same way ([`run`]; two that cross are cut first,
 //! [`crossing`]), an axis is laid through them ([`axis`]), they are put in order about it ([`order`]), and closed
-//! curves are turned to fit ([`ring`]). What was decided is told in plain words ([`explain`]), and what would twist the
+//! curves are turned to fit ([`ring`]), those between the ends as the rails pass them ([`passing`]). What was decided is told in plain words ([`explain`]), and what would twist the
 //! surface is found before it does ([`twist`]).
 
 mod axis;
@@ -12,6 +12,7 @@ mod crossing;
 mod error;
 mod explain;
 mod order;
+mod passing;
 mod ring;
 mod run;
 mod twist;
@@ -44,13 +45,16 @@ pub struct SortOptions {
     /// that cross are cut, 0 and 1 are the halves of the first one, 2 and 3 those of the second). Empty: by angle about
     /// the axis.
     pub order: Vec<String>,
-    /// Whether to run the rails the other way: start and end, and the two closed curves, change places.
+    /// Whether to run the rails the other way: start and end, and the order of the closed curves, change places.
     pub reverse_run: bool,
+    /// Whether the faces look towards the axis, as those of an opening one looks into: rails and closed curves are
+    /// turned to run clockwise, rail 0 staying where it is.
+    pub inwards: bool,
 }
 
 impl Default for SortOptions {
     fn default() -> Self {
-        Self { seam: DVec3::X, order: vec![], reverse_run: false }
+        Self { seam: DVec3::X, order: vec![], reverse_run: false, inwards: false }
     }
 }
 
@@ -58,7 +62,8 @@ impl Default for SortOptions {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sorted {
     /// Open curves, all running the same way, counter-clockwise about the axis. The tangent of a section (from rail 0
-    /// towards rail 1) times the direction of the rails points outwards.
+    /// towards rail 1) times the direction of the rails points outwards; inwards where
+    /// [`inwards`](SortOptions::inwards) asks for that, and all runs clockwise.
     pub rails: Vec<Curve>,
     /// Closed curves in the order in which the rails meet them, counter-clockwise, their first point being the one
     /// closest to the end of rail 0.
@@ -84,7 +89,7 @@ struct Rail {
 
 /// Orders curves into rails and closed curves that correspond.
 ///
-/// - **Closed curves**, two at most, count in the order given: rails run from the first to the second. Each rail is
+/// - **Closed curves** count in the order given: rails run from the first to the last, past those between. Each rail is
 ///   flipped where its ends are nearer to the wrong one.
 /// - **One closed curve**: rails run from it, to an apex where their far ends coincide.
 /// - **Two open curves that cross** or come within 2 % of the size of all curves, inside both (with no closed curve, or
@@ -102,7 +107,8 @@ struct Rail {
 /// pull it over. Rail 0 is the nearest to the seam direction (of two equally near ones the counter-clockwise one); a
 /// seam along the axis is replaced by +Z, then +X.
 /// **Closed curves** run counter-clockwise about the direction in which the rails pass them, which about a straight
-/// limb is the axis, and about a bent one still the right side.
+/// limb is the axis, and about a bent one still the right side. With [`inwards`](SortOptions::inwards) all is turned to
+/// run clockwise in the end, so that the surface made from it looks inwards.
 ///
 /// # Errors
 /// [`SortError`] where there are too few or too many curves, they do not meet, or the pinned order does not name them.
@@ -141,9 +147,6 @@ pub fn sort_while(curves: &[Curve], options: &SortOptions, go_on: &dyn Fn() -> b
         .enumerate()
         .map(|(i, curve)| (label(curve, "closed", i), curve.clone()))
         .collect();
-    if closed.len() > 2 {
-        return Err(SortError::TooManyClosed { curves: closed.into_iter().map(|(label, _)| label).collect() });
-    }
     let open: Vec<Rail> = curves
         .iter()
         .filter(|curve| !curve.is_closed())
@@ -156,7 +159,11 @@ pub fn sort_while(curves: &[Curve], options: &SortOptions, go_on: &dyn Fn() -> b
 
     let mut decisions = vec![];
     let mut warnings = vec![];
-    let rings: Vec<&Curve> = closed.iter().map(|(_, curve)| curve).collect();
+    // Rails are told their way by where they start and end.
+    let rings: Vec<&Curve> = match &closed[..] {
+        [(_, first), .., (_, last)] => vec![first, last],
+        few => few.iter().map(|(_, curve)| curve).collect(),
+    };
     let run::Run { mut rails, apex, halves } = run::run(open, &rings, size, (&mut decisions, &mut warnings), &asked)?;
     if options.reverse_run {
         for rail in &mut rails {
@@ -196,22 +203,33 @@ pub fn sort_while(curves: &[Curve], options: &SortOptions, go_on: &dyn Fn() -> b
         });
     }
 
-    // The closed curves belong to the starts and to the ends; a single one, run backwards, to the ends.
+    // The closed curves belong to the starts and to the ends; a single one, run backwards, to the ends. Those between lie
+    // where the rails pass them.
     let mut stations = [Station::at_starts(&rails, &axis), Station::at_ends(&rails, &axis)];
-    let first_end = usize::from(closed.len() == 1 && options.reverse_run);
-    let mut turned = Vec::with_capacity(closed.len());
+    let count = closed.len();
+    let first_end = usize::from(count == 1 && options.reverse_run);
+    let mut turned = Vec::with_capacity(count);
     for (i, (label, curve)) in closed.into_iter().enumerate() {
         asked()?;
-        let station = &mut stations[first_end + i];
-        let end = if first_end + i == 0 { rails[0].curve.start() } else { rails[0].curve.end() };
-        let (oriented, reversed) = ring::counter_clockwise(curve, station.direction);
-        station.turn_to(&oriented, &axis);
-        let ring::Started { curve, moved } = ring::start_nearest(&oriented, end);
+        let end = if i == 0 { Some(first_end) } else { (i + 1 == count).then_some(1) };
+        let (direction, meets) = match end {
+            Some(end) => (stations[end].direction, [rails[0].curve.start(), rails[0].curve.end()][end]),
+            None => {
+                let passing = passing::Passing::of(&rails, &curve, &asked)?;
+                let direction = if passing.direction == DVec3::ZERO { axis.direction } else { passing.direction };
+                (direction, passing.points[0])
+            }
+        };
+        let (oriented, reversed) = ring::counter_clockwise(curve, direction);
+        if let Some(end) = end {
+            stations[end].turn_to(&oriented, &axis);
+        }
+        let ring::Started { curve, moved } = ring::start_nearest(&oriented, meets);
         decisions.push(Decision::Closed { curve: label.clone(), reversed, moved });
         turned.push((label, curve));
     }
     let at_starts = turned.first().filter(|_| first_end == 0);
-    let at_ends = if first_end == 0 { turned.get(1) } else { turned.first() };
+    let at_ends = if first_end == 0 { turned.get(1..).and_then(<[_]>::last) } else { turned.first() };
     let scene = twist::Scene {
         rails: &rails,
         rings: [at_starts, at_ends],
@@ -221,6 +239,15 @@ pub fn sort_while(curves: &[Curve], options: &SortOptions, go_on: &dyn Fn() -> b
         pinned: !options.order.is_empty(),
     };
     warnings.extend(scene.warnings(&asked)?);
+    if options.inwards {
+        rails[1..].reverse();
+        // Closed curves keep their first point.
+        for (_, curve) in &mut turned {
+            asked()?;
+            *curve = curve.clone().reversed();
+        }
+        decisions.push(Decision::Inwards);
+    }
     Ok(Sorted {
         rails: rails.into_iter().map(|rail| rail.curve).collect(),
         closed: turned.into_iter().map(|(_, curve)| curve).collect(),
