@@ -5,7 +5,7 @@
 mod of_mesh;
 mod of_surface;
 
-pub use of_mesh::boundaries;
+pub use of_mesh::{boundaries, boundary_along};
 pub use of_surface::{of_sections, of_surface};
 
 use glam::DVec3;

@@ -20,8 +20,30 @@ pub fn boundaries(mesh: &Mesh) -> Result<Vec<Border>, BorderError> {
     if loops.is_empty() {
         return Ok(Vec::new());
     }
+    let normals = normals_at(mesh, loops.iter().flatten());
+    let mut borders = Vec::with_capacity(loops.len());
+    for (index, vertices) in loops.iter().filter(|vertices| vertices.len() > 2).enumerate() {
+        borders.extend(along(mesh, vertices, &normals, format!("border {}", index + 1))?);
+    }
+    Ok(borders)
+}
+
+/// The border of a mesh along one of its [boundary loops](Topology::boundary_loops), begun at its first vertex; as
+/// [`boundaries`] gives it.
+///
+/// # Errors
+/// [`BorderError`] at a vertex without a direction, and where these vertices make no curve.
+pub fn boundary_along(mesh: &Mesh, vertices: &[u32], name: &str) -> Result<Border, BorderError> {
+    let there = |vertex: &&u32| (**vertex as usize) < mesh.positions().len();
+    let vertices: Vec<u32> = vertices.iter().filter(there).copied().collect();
+    let found = along(mesh, &vertices, &normals_at(mesh, &vertices), name.to_owned())?;
+    found.ok_or_else(|| BorderError::Count { border: name.to_owned(), points: vertices.len(), found: 0 })
+}
+
+/// The sum of the normals around each of these vertices, zero at all others.
+fn normals_at<'a>(mesh: &Mesh, vertices: impl IntoIterator<Item = &'a u32>) -> Vec<DVec3> {
     let mut on_border = vec![false; mesh.positions().len()];
-    loops.iter().flatten().for_each(|vertex| on_border[*vertex as usize] = true);
+    vertices.into_iter().for_each(|vertex| on_border[*vertex as usize] = true);
     let mut normals = vec![DVec3::ZERO; mesh.positions().len()];
     for polygon in 0..mesh.polygon_count() {
         let range = mesh.corner_range(polygon);
@@ -34,21 +56,21 @@ pub fn boundaries(mesh: &Mesh) -> Result<Vec<Border>, BorderError> {
             normals[mesh.corners()[corner] as usize] += normal;
         }
     }
-    let mut borders = Vec::with_capacity(loops.len());
-    for (index, vertices) in loops.iter().filter(|vertices| vertices.len() > 2).enumerate() {
-        let at = |k: usize| mesh.positions()[vertices[k % vertices.len()] as usize];
-        let points: Vec<DVec3> = (0..vertices.len()).map(at).collect();
-        let directions = (0..vertices.len()).map(|k| {
-            let along = at(k + 1) - at(k + vertices.len() - 1);
-            // The loop runs as a face in the hole would: the mesh is to its right.
-            normals[vertices[k] as usize].cross(along)
-        });
-        let directions = directions.collect();
-        let name = format!("border {}", index + 1);
-        let Ok(curve) = Curve::new(name.clone(), points, true) else { continue };
-        borders.push(Border::new(curve, directions)?);
-    }
-    Ok(borders)
+    normals
+}
+
+/// None where the vertices are no curve.
+fn along(mesh: &Mesh, vertices: &[u32], normals: &[DVec3], name: String) -> Result<Option<Border>, BorderError> {
+    let at = |k: usize| mesh.positions()[vertices[k % vertices.len()] as usize];
+    let points: Vec<DVec3> = (0..vertices.len()).map(at).collect();
+    let directions = (0..vertices.len()).map(|k| {
+        let along = at(k + 1) - at(k + vertices.len() - 1);
+        // The loop runs as a face in the hole would: the mesh is to its right.
+        normals[vertices[k] as usize].cross(along)
+    });
+    let directions = directions.collect();
+    let Ok(curve) = Curve::new(name, points, true) else { return Ok(None) };
+    Border::new(curve, directions).map(Some)
 }
 
 #[cfg(test)]

@@ -1,4 +1,6 @@
 //! Which points of two closed borders correspond.
+//!
+//! A border with as many points as are asked for keeps them, so that what is made can be welded to it.
 
 use std::f64::consts::TAU;
 
@@ -21,6 +23,10 @@ const LEAST_COSINE: f64 = 0.2;
 #[derive(Clone, Debug)]
 pub(super) struct Alignment<'a> {
     borders: [Border<'a>; 2],
+    /// Shares of the start's length at which corresponding points lie.
+    shares: Vec<f64>,
+    /// Of both borders that keep their points, which point of the end is the first.
+    pointwise: Option<usize>,
 }
 
 /// One border, its sense and its start.
@@ -38,24 +44,48 @@ struct Border<'a> {
 }
 
 impl<'a> Alignment<'a> {
-    pub(super) fn of(given: [&'a BlendBorder<'a>; 2], twist: f64) -> Result<Self, GenerateError> {
+    pub(super) fn of(given: [&'a BlendBorder<'a>; 2], nodes: usize, twist: f64) -> Result<Self, GenerateError> {
         let [mut start, mut end] = [Border::new(given[0])?, Border::new(given[1])?];
         let way = (end.centre - start.centre).normalize_or_zero();
         start.face(start.leading()?, way, None);
         end.face(-end.leading()?, way, Some(start.axis));
-        let offsets = |border: &Border<'_>, turn: &dyn Fn(DVec3) -> DVec3| -> Vec<DVec3> {
-            (0..SAMPLES).map(|k| turn(border.point(k as f64 / SAMPLES as f64) - border.centre)).collect()
-        };
         let turn = transport(end.centre - start.centre, start.axis, end.axis);
-        let (from, to) = (offsets(&start, &turn), offsets(&end, &|v| v));
+        let offsets = |border: &Border<'_>, count: usize, at: &dyn Fn(usize) -> DVec3| -> Vec<DVec3> {
+            (0..count).map(|k| at(k) - border.centre).collect()
+        };
+        let kept = [&start, &end].map(|border| border.given.curve.points().len() == nodes);
+        if kept == [true, true] {
+            let from: Vec<DVec3> = offsets(&start, nodes, &|k| start.own_point(k)).into_iter().map(&turn).collect();
+            let to = offsets(&end, nodes, &|k| end.own_point(k));
+            let shares = start_share(&from, &to) + twist / TAU;
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to the number of points")]
+            let first = (shares * nodes as f64).round().rem_euclid(nodes as f64) as usize;
+            return Ok(Self { borders: [start, end], shares: vec![0.0; nodes], pointwise: Some(first) });
+        }
+        let even = |k: usize| k as f64 / SAMPLES as f64;
+        let from: Vec<DVec3> = offsets(&start, SAMPLES, &|k| start.point(even(k))).into_iter().map(&turn).collect();
+        let to = offsets(&end, SAMPLES, &|k| end.point(even(k)));
         end.origin = start_share(&from, &to) + twist / TAU;
-        Ok(Self { borders: [start, end] })
+        let shares = match kept {
+            [true, _] => (0..nodes).map(|k| start.own_share(k)).collect(),
+            [_, true] => {
+                let mut shares: Vec<f64> =
+                    (0..nodes).map(|k| (end.own_share(k) - end.origin).rem_euclid(1.0)).collect();
+                shares.sort_by(f64::total_cmp);
+                shares
+            }
+            _ => (0..nodes).map(|k| k as f64 / nodes as f64).collect(),
+        };
+        Ok(Self { borders: [start, end], shares, pointwise: None })
     }
 
-    /// Corresponding points at the share `t` of both, each with the direction from its surface into the blend.
-    pub(super) fn places(&self, t: f64) -> Result<[(DVec3, DVec3); 2], GenerateError> {
+    /// The corresponding points number `node` of both, each with the direction from its surface into the blend.
+    pub(super) fn places(&self, node: usize) -> Result<[(DVec3, DVec3); 2], GenerateError> {
         let [start, end] = &self.borders;
-        Ok([start.place(t)?, end.place(t)?])
+        match self.pointwise {
+            Some(first) => Ok([start.own_place(node)?, end.own_place(node + first)?]),
+            None => Ok([start.place(self.shares[node])?, end.place(self.shares[node])?]),
+        }
     }
 }
 
@@ -93,6 +123,28 @@ impl<'a> Border<'a> {
     /// The point at the share `t` behind the start, in the border's sense.
     fn point(&self, t: f64) -> DVec3 {
         self.arc.point_at(self.arc_length(t))
+    }
+
+    /// The border's own point `node` behind its first, in the border's sense.
+    fn own_index(&self, node: usize) -> usize {
+        let count = self.given.curve.points().len();
+        if self.sense > 0.0 { node % count } else { (count - node % count) % count }
+    }
+
+    fn own_point(&self, node: usize) -> DVec3 {
+        self.given.curve.points()[self.own_index(node)]
+    }
+
+    /// The share of the length at which that point lies, in the border's sense, with the start at its first point.
+    fn own_share(&self, node: usize) -> f64 {
+        let share = self.arc.cumulative()[self.own_index(node)] / self.arc.length();
+        (self.sense * share).rem_euclid(1.0)
+    }
+
+    fn own_place(&self, node: usize) -> Result<(DVec3, DVec3), GenerateError> {
+        let (index, point) = (self.own_index(node), self.own_point(node));
+        let s = self.arc.cumulative()[index];
+        Ok((point, self.given.neighbour.direction(self.given.curve, &self.arc, s, point)?))
     }
 
     fn place(&self, t: f64) -> Result<(DVec3, DVec3), GenerateError> {

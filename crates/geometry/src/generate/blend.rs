@@ -39,6 +39,9 @@ impl BlendBorder<'_> {
 /// least twist; `twist` radians more are added, counter-clockwise about that direction. Section 0 is `start`, the last
 /// one is `end`.
 ///
+/// A border of as many points as `options.nodes` keeps them, so that the blend can be welded to its surface; where both
+/// do, they correspond point by point, and are turned by whole points.
+///
 /// # Errors
 /// [`GenerateError`] for fewer than 4 sections or 8 nodes, open borders or such that enclose nothing, a strength or twist
 /// out of range, a neighbour without directions, and where `progress` asked to stop.
@@ -70,14 +73,14 @@ pub fn blend(
         }
         border.neighbour.check(border.curve)?;
     }
-    let alignment = Alignment::of([start, end], twist)?;
+    let alignment = Alignment::of([start, end], options.nodes, twist)?;
     let hermite = ExactHermite::new(options.stiffness);
     let last = options.sections - 1;
     let weights: Vec<[f64; 4]> = (0..=last).map(|i| hermite.values(i as f64 / last as f64)).collect();
     let mut rows = vec![Vec::with_capacity(options.nodes); options.sections];
     for node in 0..options.nodes {
         report(progress, node, options.nodes)?;
-        let [(p0, out), (p1, back)] = alignment.places(node as f64 / options.nodes as f64)?;
+        let [(p0, out), (p1, back)] = alignment.places(node)?;
         let chord = p1 - p0;
         let (t0, t1) = (
             out * (arc_speed(out, chord, 1.0) * start.strength),

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
+use super::curved_side::{CurvedSide, vertex_normals};
 use super::slice::Plane;
 use super::triangulate::polygon_triangles;
 use super::{Mesh, MeshError, measure};
@@ -14,28 +15,26 @@ const IN_THE_CUT: f64 = 1e-9;
 /// The part of a mesh on the side of a plane to which its normal points; open where the plane cuts it.
 ///
 /// Vertices within 1e-9 of the mesh's size of the plane are taken as in it. Polygons stay polygons; normals and UVs are
-/// carried along, linear on each side that is cut.
+/// carried along, linear on each side that is cut. A side is cut where the surface is that its normals tell of, so that
+/// the border lies on the round shape and not on its facets; where it has a hard edge or no normals, it is straight.
 ///
 /// # Errors
 /// [`MeshError`] where the result has too many corners.
 pub fn cut_with_plane(mesh: &Mesh, plane: &Plane) -> Result<Mesh, MeshError> {
     let heights: Vec<f64> = mesh.positions().iter().map(|p| plane.height(*p)).collect();
-    let share = |a: u32, b: u32| {
-        let (from, to) = (heights[a as usize], heights[b as usize]);
-        from / (from - to)
-    };
-    cut(mesh, &heights, &share)
+    cut(mesh, &heights, &|p| plane.height(p) > 0.0)
 }
 
-/// The part of a mesh at whose vertices `heights` are not negative. `share` tells at which share of the way from the
-/// first vertex to the second (the lower index first) a side is cut whose ends are on both sides.
-pub(crate) fn cut(mesh: &Mesh, heights: &[f64], share: &dyn Fn(u32, u32) -> f64) -> Result<Mesh, MeshError> {
+/// The part of a mesh at whose vertices `heights` are not negative. A side whose ends are on both sides is cut where
+/// `inside` changes on the way.
+pub(crate) fn cut(mesh: &Mesh, heights: &[f64], inside: &dyn Fn(DVec3) -> bool) -> Result<Mesh, MeshError> {
     let most = IN_THE_CUT * measure::diagonal(mesh);
     let heights: Vec<f64> = heights.iter().map(|h| if h.abs() <= most { 0.0 } else { *h }).collect();
     let mut cutter = Cutter {
         mesh,
         heights: &heights,
-        share,
+        inside,
+        vertex_normals: vertex_normals(mesh),
         renumbered: vec![None; mesh.positions().len()],
         crossings: BTreeMap::new(),
         positions: Vec::new(),
@@ -72,10 +71,11 @@ enum Place {
 struct Cutter<'a> {
     mesh: &'a Mesh,
     heights: &'a [f64],
-    share: &'a dyn Fn(u32, u32) -> f64,
+    inside: &'a dyn Fn(DVec3) -> bool,
+    vertex_normals: Vec<DVec3>,
     renumbered: Vec<Option<u32>>,
-    /// New vertices by the side they cut.
-    crossings: BTreeMap<[u32; 2], u32>,
+    /// New vertices by the side they cut, and the share of the way along it, the lower index first.
+    crossings: BTreeMap<[u32; 2], (u32, f64)>,
     positions: Vec<DVec3>,
     corners: Vec<u32>,
     counts: Vec<usize>,
@@ -152,13 +152,19 @@ impl Cutter<'_> {
     fn crossing(&mut self, from: usize, to: usize) -> Place {
         let (a, b) = (self.vertex(from), self.vertex(to));
         let edge = [a.min(b), a.max(b)];
-        let share = (self.share)(edge[0], edge[1]).clamp(0.0, 1.0);
-        let next = self.positions.len() as u32;
-        let vertex = *self.crossings.entry(edge).or_insert(next);
-        if vertex == next {
-            let [low, high] = edge.map(|v| self.mesh.positions()[v as usize]);
-            self.positions.push(low.lerp(high, share));
-        }
+        let (vertex, share) = match self.crossings.get(&edge) {
+            Some(found) => *found,
+            None => {
+                let [low, high] = edge.map(|v| v as usize);
+                let ends = [low, high].map(|v| self.mesh.positions()[v]);
+                let side = CurvedSide::new(ends, [low, high].map(|v| self.vertex_normals[v]));
+                let share = side.crossing(self.heights[low] > 0.0, self.inside);
+                let vertex = self.positions.len() as u32;
+                self.positions.push(side.at(share));
+                self.crossings.insert(edge, (vertex, share));
+                (vertex, share)
+            }
+        };
         Place::Between { from, to, share: if a == edge[0] { share } else { 1.0 - share }, vertex }
     }
 

@@ -126,7 +126,7 @@ pub fn draw_on(
 }
 
 /// Cuts a mesh along a closed stroke drawn in a view. The border runs through the stroke wherever that crosses a side of
-/// a polygon, and straight between: a finer mesh follows it more closely.
+/// a polygon, bent as the mesh's normals tell, and straight between: a finer mesh follows it more closely.
 ///
 /// With `through`, all sides that lie behind one another are cut; otherwise, of the pieces that the stroke encloses,
 /// the one most of whose vertices are seen.
@@ -161,11 +161,10 @@ pub fn cut_along(
         return Err(StrokeError::NothingOutside { stroke: name() });
     }
     let kept = |within: bool| within == (keep == Keep::Inside);
-    // The sign alone counts; how far along a side the cut is, the outline tells.
+    // The sign alone counts; where along a side the cut is, the outline tells.
     let size = measure::diagonal(mesh).max(f64::MIN_POSITIVE);
     let heights: Vec<f64> = inside.iter().map(|within| if kept(*within) { size } else { -size }).collect();
-    let share = |a: u32, b: u32| crossing(&outline, places[a as usize], places[b as usize]).unwrap_or(0.5);
-    Ok(cut(mesh, &heights, &share)?)
+    Ok(cut(mesh, &heights, &|p| kept(is_inside(&outline, flat(p))))?)
 }
 
 fn unit(direction: DVec3) -> Result<DVec3, StrokeError> {
@@ -189,18 +188,6 @@ fn is_inside(outline: &[DVec2], p: DVec2) -> bool {
         }
     }
     inside
-}
-
-/// Share of the way from `p` to `q` at which the outline is crossed first.
-fn crossing(outline: &[DVec2], p: DVec2, q: DVec2) -> Option<f64> {
-    let way = q - p;
-    let at = |(i, a): (usize, &DVec2)| {
-        let side = outline[(i + 1) % outline.len()] - *a;
-        let area = way.perp_dot(side);
-        let (t, s) = ((*a - p).perp_dot(side) / area, (*a - p).perp_dot(way) / area);
-        ((0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&s)).then_some(t)
-    };
-    outline.iter().enumerate().filter_map(at).min_by(f64::total_cmp)
 }
 
 /// Of the pieces inside, leaves the one of which most vertices are seen.

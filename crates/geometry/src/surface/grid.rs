@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::beside::{self, Beside};
 use super::knots;
 use super::pole::{self, PoleShape, RoundPole};
 use super::skin::{SkinError, SkinOptions};
@@ -83,6 +84,7 @@ pub(crate) fn sample(
     sections: &Sections,
     poles: &[bool],
     options: &SkinOptions,
+    beside: &Beside<'_>,
     progress: &dyn Fn(f64) -> bool,
 ) -> Result<Grid, SkinError> {
     let Extent { rows, columns, cells } = Extent::new(sections, options);
@@ -100,18 +102,54 @@ pub(crate) fn sample(
             *slope = -*outward;
         }
     }
-    let given = |tip: &Option<RoundPole>| if tip.is_some() { End::Slope } else { End::Natural };
-    let ends = Ends::Open { start: given(&tips[0]), end: given(&tips[1]) };
-    let system = SlopeSystem::new(intervals, ends);
+    let given = |slope: bool| if slope { End::Slope } else { End::Natural };
+    let open = |[start, end]: [bool; 2]| Ends::Open { start: given(start), end: given(end) };
+    let tipped = [tips[0].is_some(), tips[1].is_some()];
+    let mut system = SlopeSystem::new(intervals, open(tipped));
     system.solve(points, &mut slopes, nodes);
 
     let asked = |done: f64| if progress(done) { Ok(()) } else { Err(SkinError::Cancelled) };
     asked(0.0)?;
-    let ends = if closed { Ends::Periodic } else { Ends::Open { start: End::Natural, end: End::Natural } };
-    let across = SlopeSystem::new(knots::across(sections, options.parameter, poles), ends);
-    let point = spread(points, &across, nodes, options.columns);
+    let knots = knots::across(sections, options.parameter, poles);
+    let across = SlopeSystem::new(knots.clone(), if closed { Ends::Periodic } else { open([false; 2]) });
+    let leaving = beside.ends.iter().zip(tipped).map(|(end, tip)| end.is_some() && !tip);
+    let leaving: Vec<bool> = leaving.collect();
+    if leaving.contains(&true) {
+        let mut tangents = vec![DVec3::ZERO; nodes];
+        for (end, directions) in beside.ends.iter().enumerate().filter(|(end, _)| leaving[*end] && count > 2) {
+            let row = |k: usize| if end == 0 { k } else { count - 1 - k };
+            across.solve(sections.section(row(0)), &mut tangents, 1);
+            let gaps = [0, 1].map(|k| system.intervals()[if end == 0 { k } else { count - 2 - k }]);
+            for (j, direction) in directions.unwrap_or_default().iter().enumerate() {
+                let slope = beside::leaving([0, 1, 2].map(|k| points[row(k) * nodes + j]), gaps);
+                let slope = if end == 0 { slope } else { -slope };
+                slopes[row(0) * nodes + j] = beside::turned_into(slope, tangents[j], *direction);
+            }
+        }
+        let fixed = [0, 1].map(|end| tipped[end] || (leaving[end] && count > 2));
+        system = SlopeSystem::new(system.intervals().to_vec(), open(fixed));
+        system.solve(points, &mut slopes, nodes);
+    }
+    let sides = beside.sides.map(|side| side.filter(|_| !closed && nodes > 2));
+    let point = if sides == [None; 2] {
+        spread(points, &across, nodes, options.columns, [&[], &[]])
+    } else {
+        let slopes_at = sides.iter().enumerate().map(|(side, directions)| -> Vec<DVec3> {
+            let column = |k: usize| if side == 0 { k } else { nodes - 1 - k };
+            let gaps = [0, 1].map(|k| knots[if side == 0 { k } else { nodes - 2 - k }]);
+            let turned = |(row, direction): (usize, &DVec3)| {
+                let slope = beside::leaving([0, 1, 2].map(|k| points[row * nodes + column(k)]), gaps);
+                let slope = if side == 0 { slope } else { -slope };
+                beside::turned_into(slope, slopes[row * nodes + column(0)], *direction)
+            };
+            directions.unwrap_or_default().iter().enumerate().map(turned).collect()
+        });
+        let slopes_at: Vec<Vec<DVec3>> = slopes_at.collect();
+        let leaving = SlopeSystem::new(knots, open(sides.map(|side| side.is_some())));
+        spread(points, &leaving, nodes, options.columns, [&slopes_at[0], &slopes_at[1]])
+    };
     asked(0.05)?;
-    let slope = spread(&slopes, &across, nodes, options.columns);
+    let slope = spread(&slopes, &across, nodes, options.columns, [&[], &[]]);
 
     let tip_normals = [tips[0].as_ref().map(|t| -t.axis), tips[1].as_ref().map(|t| t.axis)];
     let mut positions = Vec::with_capacity(rows * columns);
@@ -174,8 +212,9 @@ fn round_poles(
     })
 }
 
-/// Evaluates the splines across at `steps` places between neighbouring points.
-fn spread(values: &[DVec3], system: &SlopeSystem, nodes: usize, steps: usize) -> Dense {
+/// Evaluates the splines across at `steps` places between neighbouring points. Slopes at the ends are those given, one a
+/// section, where the system is made for that.
+fn spread(values: &[DVec3], system: &SlopeSystem, nodes: usize, steps: usize, given: [&[DVec3]; 2]) -> Dense {
     let spans = system.intervals().len();
     let rows = values.len() / nodes;
     let mut slopes = vec![DVec3::ZERO; nodes];
@@ -186,7 +225,12 @@ fn spread(values: &[DVec3], system: &SlopeSystem, nodes: usize, steps: usize) ->
         .iter()
         .flat_map(|h| (1..steps).map(|step| Hermite::new(step as f64 / steps as f64, *h)))
         .collect();
-    for values in values.chunks_exact(nodes) {
+    for (row, values) in values.chunks_exact(nodes).enumerate() {
+        for (place, given) in [0, nodes - 1].into_iter().zip(given) {
+            if let Some(slope) = given.get(row) {
+                slopes[place] = *slope;
+            }
+        }
         system.solve(values, &mut slopes, 1);
         for j in 0..nodes {
             dense.value.push(values[j]);

@@ -1,6 +1,7 @@
 //! Surfaces through stacks of cross-sections.
 
 pub mod analytic;
+mod beside;
 mod cap;
 pub mod continuity;
 pub mod fairness;
@@ -15,9 +16,10 @@ pub mod tessellate;
 #[cfg(test)]
 mod tests;
 
+pub use beside::Beside;
 pub(crate) use cap::{Lid, NoArea, flat as flat_cap};
 pub use fairness::{Ripple, ripple};
 pub use knots::UParameter;
 pub(crate) use parts::MeshParts;
 pub use pole::PoleShape;
-pub use skin::{Cap, SkinError, SkinOptions, skin};
+pub use skin::{Cap, SkinError, SkinOptions, skin, skin_beside};

@@ -2,6 +2,7 @@
 
 use glam::DVec2;
 
+use super::beside::Beside;
 use super::grid::{self, Extent, Grid};
 use super::parts::{Corner, MeshParts};
 use super::{PoleShape, UParameter, cap};
@@ -54,6 +55,16 @@ pub const MOST_VERTICES: usize = 50_000_000;
 /// Why sections do not make a surface.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SkinError {
+    /// Another number of directions than of points.
+    #[error("{found} directions given at the {border}, and it has {needed} points")]
+    Directions {
+        /// Which border of the skin.
+        border: &'static str,
+        /// Directions given.
+        found: usize,
+        /// Its points; none at the sides of closed sections.
+        needed: usize,
+    },
     /// Too few or too many quads between sections or points.
     #[error("{value} {what} asked for between neighbours: give 1 to 64")]
     OutOfRange {
@@ -137,8 +148,26 @@ pub enum SkinError {
 /// # Errors
 /// [`SkinError`] where options are out of range, sections coincide, or a cap is asked for that cannot be made.
 pub fn skin(sections: &Sections, options: &SkinOptions, progress: &dyn Fn(f64) -> bool) -> Result<Mesh, SkinError> {
+    skin_beside(sections, options, &Beside::default(), progress)
+}
+
+/// The same between other surfaces, which it continues: at the borders for which directions are given, the slope of the
+/// spline across them is turned into the neighbour's tangent plane (thesis 4.5 to 4.11), in the place of its natural end.
+/// The normals there are the neighbour's. An end that is a round pole keeps its shape, and so does one of two sections.
+///
+/// # Errors
+/// As [`skin`], and where there is another number of directions than of points.
+pub fn skin_beside(
+    sections: &Sections,
+    options: &SkinOptions,
+    beside: &Beside<'_>,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<Mesh, SkinError> {
     let poles = check(sections, options)?;
-    let mut grid = grid::sample(sections, &poles, options, &|done| progress(0.6 * done))?;
+    if let Some((border, found, needed)) = beside.misfit(sections) {
+        return Err(SkinError::Directions { border, found, needed });
+    }
+    let mut grid = grid::sample(sections, &poles, options, beside, &|done| progress(0.6 * done))?;
     let mut parts = MeshParts { positions: std::mem::take(&mut grid.positions), ..MeshParts::default() };
     parts.reserve((grid.rows() - 1) * grid.cells);
     let asked = |done: f64| if progress(done) { Ok(()) } else { Err(SkinError::Cancelled) };

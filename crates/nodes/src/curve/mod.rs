@@ -6,6 +6,7 @@ pub(crate) mod clean_strokes;
 pub(crate) mod compare_curves;
 pub(crate) mod draw_on_surface;
 pub(crate) mod join;
+pub(crate) mod join_borders;
 pub(crate) mod mirror;
 pub(crate) mod pick;
 pub(crate) mod resample;

@@ -11,7 +11,7 @@ use crate::wire;
 pub(crate) fn kind() -> NodeKind {
     let mut node = NodeKind::declare(
         "blend",
-        1,
+        2,
         "generate",
         "A tube from the border of one surface to that of another that continues both smoothly: a limb into a body.",
     );
@@ -20,7 +20,12 @@ pub(crate) fn kind() -> NodeKind {
     let end = node.input::<wire::Borders>("end", "The other closed border.");
     let sections = node.integer("sections", 16, 4..=4096, "Sections from one border to the other.");
     node.soft_range(sections, 8.0..=64.0);
-    let nodes = node.integer("nodes", 64, 8..=4096, "Points of each section.");
+    let nodes = node.integer(
+        "nodes",
+        64,
+        8..=4096,
+        "Points of each section. A border of as many points keeps them, and can be welded to the blend.",
+    );
     node.soft_range(nodes, 16.0..=256.0);
     let mut strength = |name: &str, of: &str| {
         let description =
@@ -31,8 +36,12 @@ pub(crate) fn kind() -> NodeKind {
     };
     let start_strength = strength("start-strength", "first surface");
     let end_strength = strength("end-strength", "other surface");
-    let twist =
-        node.angle("twist", 0.0, -36_000.0..=36_000.0, "Turns the end against the start, besides what fits best.");
+    let twist = node.angle(
+        "twist",
+        0.0,
+        -36_000.0..=36_000.0,
+        "Turns the end against the start, besides what fits best; by whole points where both borders keep theirs.",
+    );
     node.soft_range(twist, -180.0..=180.0);
     let stiffness = StiffnessInputs::declare(&mut node);
     let blended =

@@ -12,7 +12,7 @@ use crate::wire;
 pub(crate) fn kind() -> NodeKind {
     let mut node = NodeKind::declare(
         "cut-with-plane",
-        1,
+        2,
         "mesh",
         "Cuts a mesh in two along a plane. The parts are open there; `caps` closes them, `blend` joins them to others.",
     );

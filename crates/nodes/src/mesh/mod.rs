@@ -9,6 +9,7 @@ pub(crate) mod cut_with_plane;
 pub(crate) mod join_meshes;
 pub(crate) mod join_parts;
 pub(crate) mod mirror_mesh;
+pub(crate) mod resample_border;
 pub(crate) mod silhouette_of;
 pub(crate) mod silhouette_report;
 pub(crate) mod transform_mesh;

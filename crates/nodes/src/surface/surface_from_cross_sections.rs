@@ -7,9 +7,10 @@ use maquette_geometry::mesh::Mesh;
 use maquette_geometry::sections::Sections;
 use maquette_geometry::surface::analytic::{AnalyticSurface, Blend, EndCondition, Side, SurfaceError, SurfaceOptions};
 use maquette_geometry::surface::tessellate::{Closing, Density, Spacing, Tessellation, TessellationError, tessellate};
-use maquette_geometry::surface::{Cap, SkinError, SkinOptions, skin};
+use maquette_geometry::surface::{Cap, SkinError, SkinOptions, skin_beside};
 use maquette_graph::{AtPort, ChoiceInput, FigureHandle, Input, NodeError, NodeKind, OptionalInput, Ports, Unit};
 
+use super::edges::Edges;
 use crate::surfacing::{BlendChoice, ClosingChoice, EndChoice, JoinChoice, ParameterChoice, PoleChoice, blend_name};
 use crate::wire;
 
@@ -26,6 +27,7 @@ struct Inputs {
     parameter: ChoiceInput<ParameterChoice>,
     pole: ChoiceInput<PoleChoice>,
     blend: ChoiceInput<BlendChoice>,
+    neighbours: OptionalInput<wire::Borders>,
     before: OptionalInput<wire::Surface>,
     after: OptionalInput<wire::Surface>,
     continuity: ChoiceInput<JoinChoice>,
@@ -63,6 +65,11 @@ pub(crate) fn kind() -> NodeKind {
         parameter: node.choice("parameter", "How the sections are spaced along u."),
         pole: node.choice("pole", "Shape where a section is a point."),
         blend: node.choice("blend", "The functions of u between the sections; those of points have the spline."),
+        neighbours: node.optional(
+            "neighbours",
+            "Borders of surfaces that it continues, those that its sections were made with: it leaves them without a crease. \
+             For sections of points.",
+        ),
         before: node.optional(
             "before",
             "A surface that this one goes on from: its last section is the first one here. For series.",
@@ -136,8 +143,10 @@ impl Inputs {
             parameter: ports.choice(self.parameter).0,
             pole: ports.choice(self.pole).0,
         };
+        let borders = ports.read_optional(self.neighbours).map(|borders| borders.0.as_slice()).unwrap_or_default();
+        let found = Edges::of(sections, borders).at(self.neighbours)?;
         use SkinError as E;
-        match skin(sections, &options, &ports.progress_callback()) {
+        match skin_beside(sections, &options, &found.beside(), &ports.progress_callback()) {
             Err(error @ E::OutOfRange { what: "rows", .. }) => Err(error).at(self.rows),
             Err(error @ E::OutOfRange { .. }) => Err(error).at(self.columns),
             Err(error @ (E::CapOnOpenSection { section: 0 } | E::CapWithoutArea { section: 0 })) => {
@@ -157,6 +166,10 @@ impl Inputs {
         series: &wire::EllipticSections,
         [sections, constants]: [FigureHandle; 2],
     ) -> Result<AnalyticSurface, NodeError> {
+        if ports.read_optional(self.neighbours).is_some() {
+            let message = "neighbours are for sections of points: disconnect them, and use `before` and `after`";
+            return Err(message).at(self.neighbours);
+        }
         let continuity = ports.choice(self.continuity).0;
         let neighbour =
             |input: OptionalInput<wire::Surface>, side, otherwise: EndChoice| -> Result<EndCondition, NodeError> {
