@@ -106,9 +106,10 @@ struct Rail {
 /// centre is the centroid of the convex hull of these points seen along the axis, so that many rails on one side do not
 /// pull it over. Rail 0 is the nearest to the seam direction (of two equally near ones the counter-clockwise one); a
 /// seam along the axis is replaced by +Z, then +X.
-/// **Closed curves** run counter-clockwise about the direction in which the rails pass them, which about a straight
-/// limb is the axis, and about a bent one still the right side. With [`inwards`](SortOptions::inwards) all is turned to
-/// run clockwise in the end, so that the surface made from it looks inwards.
+/// **Closed curves** run so that they meet the rails in their order. Where that leaves both ways open (two rails), they
+/// run counter-clockwise about the direction in which the rails pass them, which about a straight limb is the axis, and
+/// about a bent one still the right side. With [`inwards`](SortOptions::inwards) all is turned to run clockwise in the
+/// end, so that the surface made from it looks inwards.
 ///
 /// # Errors
 /// [`SortError`] where there are too few or too many curves, they do not meet, or the pinned order does not name them.
@@ -213,18 +214,19 @@ pub fn sort_while(curves: &[Curve], options: &SortOptions, go_on: &dyn Fn() -> b
         asked()?;
         let end = if i == 0 { Some(first_end) } else { (i + 1 == count).then_some(1) };
         let (direction, meets) = match end {
-            Some(end) => (stations[end].direction, [rails[0].curve.start(), rails[0].curve.end()][end]),
+            Some(0) => (stations[0].direction, rails.iter().map(|rail| rail.curve.start()).collect()),
+            Some(_) => (stations[1].direction, rails.iter().map(|rail| rail.curve.end()).collect()),
             None => {
                 let passing = passing::Passing::of(&rails, &curve, &asked)?;
                 let direction = if passing.direction == DVec3::ZERO { axis.direction } else { passing.direction };
-                (direction, passing.points[0])
+                (direction, passing.points)
             }
         };
-        let (oriented, reversed) = ring::counter_clockwise(curve, direction);
+        let (oriented, reversed) = ring::along_rails(curve, &meets, direction);
         if let Some(end) = end {
             stations[end].turn_to(&oriented, &axis);
         }
-        let ring::Started { curve, moved } = ring::start_nearest(&oriented, meets);
+        let ring::Started { curve, moved } = ring::start_nearest(&oriented, meets[0]);
         decisions.push(Decision::Closed { curve: label.clone(), reversed, moved });
         turned.push((label, curve));
     }

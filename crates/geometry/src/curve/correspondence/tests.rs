@@ -92,6 +92,24 @@ fn tube_is_sorted_with_every_decision_told() {
     );
 }
 
+/// Lips, lids: a flat ring whose rails rise off the outer curve, and end a little below it at the inner one.
+#[test]
+fn closed_curves_of_a_swollen_ring_run_as_the_rails_stand() {
+    let lip = |k: i32| {
+        let angle = TAU * f64::from(k) / 8.0;
+        let points = (0..=20).map(|i| f64::from(i) / 20.0);
+        let points = points.map(|t| on_circle(angle, 1.0 - 0.4 * t, 0.5 * (PI * t).sin() - 0.1 * t)).collect();
+        Curve::new(format!("{k}"), points, false).unwrap()
+    };
+    let mut curves: Vec<Curve> = [3, 0, 5, 1, 7, 2, 6, 4].map(lip).into();
+    curves.extend([ring("mouth", 1.0, 0.0), ring("lip line", 0.6, -0.1).reversed()]);
+    let sorted = sorted(&curves);
+    assert_eq!(sorted.warnings, Vec::<String>::new());
+    // The axis points down, from the outer curve to the inner one.
+    assert_eq!(names(&sorted), ["0", "7", "6", "5", "4", "3", "2", "1"]);
+    assert!(sorted.closed.iter().all(|ring| ring.area_vector().y < 0.0));
+}
+
 #[test]
 fn closed_curves_between_the_ends_are_turned_as_the_rails_pass_them() {
     let mut curves = tube();
