@@ -113,7 +113,8 @@ fn out_of_neighbour(border: &Border, start: DVec3, leaves: DVec3) -> f64 {
     let [one, two] = [segment % count, (segment + 1) % count].map(|k| border.directions()[k].normalize());
     let reach = 0.0025 * arc.length();
     let at = closest(border.curve(), start).arc_length;
-    let along = arc.point_at((at + reach).rem_euclid(arc.length())) - arc.point_at((at - reach).rem_euclid(arc.length()));
+    let along =
+        arc.point_at((at + reach).rem_euclid(arc.length())) - arc.point_at((at - reach).rem_euclid(arc.length()));
     let normal = along.cross(one.lerp(two, share)).normalize();
     leaves.normalize().dot(normal).asin().abs().to_degrees()
 }

@@ -42,8 +42,11 @@ pub fn crease(sections: &Sections, column: usize) -> f64 {
 pub fn crossings(mesh: &Mesh) -> usize {
     let all: Vec<[u32; 3]> = triangles(mesh).map(|corners| corners.map(|c| mesh.corners()[c])).collect();
     let at = |vertex: u32| mesh.positions()[vertex as usize];
-    let edges: BTreeSet<[u32; 2]> =
-        all.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]).map(|[a, b]| [a.min(b), a.max(b)]).collect();
+    let edges: BTreeSet<[u32; 2]> = all
+        .iter()
+        .flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]])
+        .map(|[a, b]| [a.min(b), a.max(b)])
+        .collect();
     let cell = edges.iter().map(|[a, b]| at(*a).distance(at(*b))).fold(0.0, f64::max);
     let cells = |points: &[DVec3]| {
         let low = points.iter().copied().reduce(DVec3::min).unwrap_or_default() / cell;

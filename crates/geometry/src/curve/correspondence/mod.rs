@@ -107,7 +107,8 @@ struct Rail {
 /// pull it over. Rail 0 is the nearest to the seam direction (of two equally near ones the counter-clockwise one); a
 /// seam along the axis is replaced by +Z, then +X.
 /// **Closed curves** run counter-clockwise about the direction in which the rails pass them, which about a straight
-/// limb is the axis, and about a bent one still the right side. With [`inwards`](SortOptions::inwards) all is turned to
+/// limb is the axis, and about a bent one still the right side; those between the ends run in the order in which the
+/// rails pass them. With [`inwards`](SortOptions::inwards) all is turned to
 /// run clockwise in the end, so that the surface made from it looks inwards.
 ///
 /// # Errors
@@ -212,18 +213,18 @@ pub fn sort_while(curves: &[Curve], options: &SortOptions, go_on: &dyn Fn() -> b
     for (i, (label, curve)) in closed.into_iter().enumerate() {
         asked()?;
         let end = if i == 0 { Some(first_end) } else { (i + 1 == count).then_some(1) };
-        let (direction, meets) = match end {
-            Some(end) => (stations[end].direction, [rails[0].curve.start(), rails[0].curve.end()][end]),
+        let (oriented, reversed, meets) = match end {
+            Some(end) => {
+                let (oriented, reversed) = ring::counter_clockwise(curve, stations[end].direction);
+                stations[end].turn_to(&oriented, &axis);
+                (oriented, reversed, [rails[0].curve.start(), rails[0].curve.end()][end])
+            }
             None => {
-                let passing = passing::Passing::of(&rails, &curve, &asked)?;
-                let direction = if passing.direction == DVec3::ZERO { axis.direction } else { passing.direction };
-                (direction, passing.points[0])
+                let passing = passing::Passing::of(&rails, &curve, axis.direction, &asked)?;
+                let oriented = if passing.backwards { curve.reversed() } else { curve };
+                (oriented, passing.backwards, passing.first)
             }
         };
-        let (oriented, reversed) = ring::counter_clockwise(curve, direction);
-        if let Some(end) = end {
-            stations[end].turn_to(&oriented, &axis);
-        }
         let ring::Started { curve, moved } = ring::start_nearest(&oriented, meets);
         decisions.push(Decision::Closed { curve: label.clone(), reversed, moved });
         turned.push((label, curve));
