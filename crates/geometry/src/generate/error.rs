@@ -279,7 +279,7 @@ pub enum GenerateError {
     /// Contours of two views in another order than around.
     #[error(
         "the rails (\"{}\", \"{}\", \"{}\", \"{}\") do not run around counter-clockwise, the outlines of the two views by \
-         turns: pass them through `sort`",
+         turns: pass them through `sort`, with faces outwards",
         names[0], names[1], names[2], names[3]
     )]
     RailsUnsorted {

@@ -5,8 +5,6 @@ use glam::DVec3;
 
 /// Share of the curve's length within which a foot counts as one of its points.
 const ON_POINT: f64 = 1e-9;
-/// Share of a turn by which neighbours may stand in the wrong order before it counts.
-const ORDER: f64 = 1e-6;
 
 /// The closed curve run counter-clockwise about a direction, and whether it had to be reversed for that.
 fn counter_clockwise(curve: Curve, direction: DVec3) -> (Curve, bool) {
@@ -14,32 +12,22 @@ fn counter_clockwise(curve: Curve, direction: DVec3) -> (Curve, bool) {
     (if reversed { curve.reversed() } else { curve }, reversed)
 }
 
-/// The closed curve run so that it meets these ends of rails in their order, and whether it had to be reversed for that;
-/// counter-clockwise about a direction where both ways meet them in order (two rails) or neither does. The rails say it
-/// better than their direction: where they leave a flat ring outwards and come back in, that points the other way.
-pub(super) fn along_rails(curve: Curve, ends: &[DVec3], direction: DVec3) -> (Curve, bool) {
-    let places: Vec<f64> = ends.iter().map(|end| closest(&curve, *end).fraction).collect();
-    let forth = increases(&from_first(places.clone()));
-    let back = increases(&from_first(places.into_iter().map(|place| -place).collect()));
-    match (forth, back) {
-        (true, false) => (curve, false),
-        (false, true) => (curve.reversed(), true),
-        _ => counter_clockwise(curve, direction),
+/// The closed curve run so that it meets these places of the rails in their order, and whether it had to be reversed for
+/// that; counter-clockwise about a direction where both ways are as good (two rails). The rails say it better than their
+/// direction: where they leave a flat ring outwards and come back in, that points the other way.
+pub(super) fn along_rails(curve: Curve, meets: &[DVec3], direction: DVec3) -> (Curve, bool) {
+    let feet: Vec<f64> = meets.iter().map(|place| closest(&curve, *place).fraction).collect();
+    // Once around with the order of the rails is one turn, against it one less than there are rails.
+    let next = feet.iter().cycle().skip(1);
+    let turns: f64 = feet.iter().zip(next).map(|(from, to)| (to - from).rem_euclid(1.0)).sum();
+    let half = 0.5 * feet.len() as f64;
+    if (turns - half).abs() < 0.25 {
+        counter_clockwise(curve, direction)
+    } else if turns > half {
+        (curve.reversed(), true)
+    } else {
+        (curve, false)
     }
-}
-
-/// Places around a circle (in turns) as turns from the first of them, 0 to 1.
-pub(super) fn from_first(mut places: Vec<f64>) -> Vec<f64> {
-    let first = places.first().copied().unwrap_or(0.0);
-    for place in &mut places {
-        *place = (*place - first + ORDER).rem_euclid(1.0);
-    }
-    places
-}
-
-/// Whether they follow one another; a millionth of a turn does not count.
-pub(super) fn increases(places: &[f64]) -> bool {
-    places.windows(2).all(|pair| pair[1] > pair[0] - ORDER)
 }
 
 /// A closed curve with a new first point.

@@ -3,11 +3,13 @@
 use super::axis::Station;
 use super::explain::{listed, metres};
 use super::order::mid_arc;
-use super::ring::{from_first, increases};
 use super::{GoOn, MEETING, Rail, SAME, SortError};
 use crate::curve::{Curve, closest};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Share of a turn by which neighbours may stand in the wrong order before it counts.
+const ORDER: f64 = 1e-6;
 
 /// Rails in order, and what they begin and end at.
 pub(super) struct Scene<'a> {
@@ -148,6 +150,19 @@ impl Scene<'_> {
             }
         }
     }
+}
+
+/// Places around a circle (in turns) as turns from the first of them, 0 to 1.
+fn from_first(mut places: Vec<f64>) -> Vec<f64> {
+    let first = places.first().copied().unwrap_or(0.0);
+    for place in &mut places {
+        *place = (*place - first + ORDER).rem_euclid(1.0);
+    }
+    places
+}
+
+fn increases(places: &[f64]) -> bool {
+    places.windows(2).all(|pair| pair[1] > pair[0] - ORDER)
 }
 
 fn wrapped(angle: f64) -> f64 {
