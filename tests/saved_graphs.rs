@@ -115,6 +115,8 @@ fn every_saved_graph_is_tested_here() {
     assert_eq!(
         saved,
         [
+            "blend",
+            "chest",
             "forearm",
             "from-image",
             "from-template",
@@ -126,7 +128,9 @@ fn every_saved_graph_is_tested_here() {
             "legs",
             "neck",
             "open-strokes",
+            "patch",
             "sea-star",
+            "shoulder",
             "torso",
             "vest"
         ]
@@ -152,6 +156,10 @@ fn no_saved_graph_has_a_node_without_use() {
         "leg-deformed",
         "sea-star",
         "torso",
+        "blend",
+        "chest",
+        "patch",
+        "shoulder",
     ] {
         let saved = Saved::load(name);
         let used = saved.graph.upstream(&saved.graph.results());

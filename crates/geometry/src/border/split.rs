@@ -40,7 +40,8 @@ pub enum SplitBorderError {
 }
 
 /// The sides of a closed border between its points nearest to `corners`, in its order from the first corner: each `count`
-/// (2 or more) points at equal distances on a natural C2 spline through the border's, with directions by another.
+/// (2 or more) points at equal distances on a natural C2 spline through the border's, with directions square to it and to
+/// the surface's normals, which another spline goes through.
 ///
 /// # Errors
 /// [`SplitBorderError`] where the border is open, or corners are too few or too near to one another.
@@ -91,12 +92,22 @@ fn one_side(border: &Border, places: &[usize], count: usize, side: usize) -> Res
     kept.push(places[places.len() - 1]);
     parameters.push(total);
     let line = SplineLength::of(CubicSpline::natural(parameters.clone(), kept.iter().map(at).collect())?);
-    let directions = CubicSpline::natural(parameters, kept.iter().map(|k| border.directions()[*k]).collect())?;
+    // At a corner the border's direction halves the angle between its sides; the normal is that of both.
+    let count_all = border.curve().points().len();
+    let normal = |k: &usize| {
+        let along = at(&((k + 1) % count_all)) - at(&((k + count_all - 1) % count_all));
+        along.cross(border.directions()[*k]).normalize_or_zero()
+    };
+    let normals = CubicSpline::natural(parameters, kept.iter().map(normal).collect())?;
     let stations: Vec<f64> = (0..count).map(|k| line.length() * k as f64 / (count - 1) as f64).collect();
     let mut points: Vec<DVec3> = stations.iter().map(|s| line.point_at(*s)).collect();
     // The sides meet to the bit.
     (points[0], points[count - 1]) = (at(&places[0]), at(&places[places.len() - 1]));
-    let leading = stations.iter().map(|s| directions.position(line.parameter_at(*s))).collect();
+    let leading = stations.iter().map(|s| {
+        let t = line.parameter_at(*s);
+        normals.position(t).cross(line.spline().derivative(t))
+    });
+    let leading = leading.collect();
     let name = format!("{} side {}", border.curve().name(), side + 1);
     let none = |_| BorderError::Count { border: name.clone(), points: points.len(), found: 0 };
     let curve = Curve::new(name.clone(), points.clone(), false).map_err(none)?;
@@ -113,11 +124,13 @@ mod tests {
     use super::*;
     use crate::curve::ArcLength;
 
-    /// A square of side 2 about the origin in XZ, ten points a side, its directions upwards.
+    /// A square hole of side 2 about the origin in XZ, ten points a side; at corners the directions are diagonal.
     fn square() -> Border {
         let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)].map(|(x, z)| DVec3::new(x, 0.0, z));
-        let points = (0..40).map(|k| corners[k / 10].lerp(corners[(k / 10 + 1) % 4], (k % 10) as f64 / 10.0)).collect();
-        Border::new(Curve::new("hole", points, true).unwrap(), vec![DVec3::Y; 40]).unwrap()
+        let at = |k: usize| corners[k / 10 % 4].lerp(corners[(k / 10 + 1) % 4], (k % 10) as f64 / 10.0);
+        let inwards = |k: usize| (at(k + 1) - at((k + 39) % 40)).cross(DVec3::Y);
+        Border::new(Curve::new("hole", (0..40).map(at).collect(), true).unwrap(), (0..40).map(inwards).collect())
+            .unwrap()
     }
 
     #[test]
@@ -129,7 +142,12 @@ mod tests {
         for (k, side) in sides.iter().enumerate() {
             assert_eq!(side.curve().end(), sides[(k + 1) % 4].curve().start());
             assert!((ArcLength::of(side.curve()).length() - 2.0).abs() < 1e-12 && side.curve().points().len() == 33);
-            assert!(side.directions().iter().all(|d| d.distance(DVec3::Y) < 1e-12));
+            let along = (side.curve().end() - side.curve().start()) / 2.0;
+            assert!(
+                side.directions().iter().all(|d| d.distance(along.cross(DVec3::Y)) < 1e-9),
+                "{:?}",
+                side.directions()
+            );
         }
         assert!((0.1..0.25).contains(&farthest_corner(&square(), &corners)));
     }
