@@ -18,6 +18,10 @@ draw human human 480x720
 draw human human-side 480x720 --view side
 draw leg-deformed leg-deformed 320x560
 draw sea-star sea-star 480x440
+draw blend blend 320x560 --wireframe
+draw shoulder shoulder 560x480
+draw patch patch 560x400 --curves
+draw chest chest 400x560
 draw forearm forearm 400x480 --wireframe
 draw hip hip 480x480
 draw from-image from-image 480x360

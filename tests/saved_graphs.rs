@@ -116,6 +116,8 @@ fn every_saved_graph_is_tested_here() {
         saved,
         [
             "eye-socket",
+            "blend",
+            "chest",
             "forearm",
             "forearm-sheet",
             "from-image",
@@ -130,8 +132,10 @@ fn every_saved_graph_is_tested_here() {
             "mouth",
             "neck",
             "open-strokes",
+            "patch",
             "sea-star",
             "shoulder-cap",
+            "shoulder",
             "torso",
             "vest"
         ]
@@ -162,6 +166,10 @@ fn no_saved_graph_has_a_node_without_use() {
         "eye-socket",
         "forearm-sheet",
         "knee-guard",
+        "blend",
+        "chest",
+        "patch",
+        "shoulder",
     ] {
         let saved = Saved::load(name);
         let used = saved.graph.upstream(&saved.graph.results());

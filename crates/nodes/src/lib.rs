@@ -43,6 +43,7 @@ fn kinds() -> Vec<NodeKind> {
         curve::simplify::kind(),
         curve::smooth::kind(),
         curve::sort::kind(),
+        curve::split_border::kind(),
         curve::transform::kind(),
         deform::align_primitive::kind(),
         deform::beam::kind(),

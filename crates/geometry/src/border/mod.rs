@@ -4,9 +4,11 @@
 
 mod of_mesh;
 mod of_surface;
+mod split;
 
 pub use of_mesh::{boundaries, boundary_along};
 pub use of_surface::{of_sections, of_surface};
+pub use split::{SplitBorderError, farthest_corner, split};
 
 use glam::DVec3;
 

@@ -156,6 +156,33 @@ fn place_and_twist() {
 }
 
 #[test]
+fn borders_of_as_many_points_keep_them() {
+    let uneven = |name: &str, count: usize, at: DVec3, start: f64| {
+        let angle = |k: usize| TAU * (k as f64 / count as f64 + start) + 0.3 * (TAU * k as f64 / count as f64).sin();
+        let point = |a: f64| at + DVec3::new(0.05 * a.cos(), 0.0, -0.05 * a.sin());
+        Curve::new(name, (0..count).map(angle).map(point).collect(), true).unwrap()
+    };
+    let low = uneven("low", 64, DVec3::ZERO, 0.0);
+    for (count, start) in [(64, 0.0), (64, 0.4), (48, 0.1)] {
+        let high = uneven("high", count, DVec3::Y * 0.2, start);
+        for high in [high.clone(), high.reversed()] {
+            for ends in [[&low, &high], [&high, &low]] {
+                let axes = if ends[0] == &low { [DVec3::Y, -DVec3::Y] } else { [-DVec3::Y, DVec3::Y] };
+                let made = tubes(ends, axes, &options()).sections;
+                for (row, curve) in [(0, ends[0]), (32, ends[1])] {
+                    let kept = curve.points().iter().all(|p| made.section(row).iter().any(|q| p.distance(*q) < 1e-15));
+                    assert_eq!(kept, curve.points().len() == 64, "{count} from {start}, row {row}");
+                }
+                // No twist: what is over one another belongs together, as near as points allow.
+                let apart = |p: &DVec3, q: &DVec3| (p.x - q.x).hypot(p.z - q.z);
+                let most = made.section(0).iter().zip(made.section(32)).map(|(p, q)| apart(p, q)).fold(0.0, f64::max);
+                assert!(most < 0.035, "{count} from {start}: {most}");
+            }
+        }
+    }
+}
+
+#[test]
 fn errors() {
     let (low, high) = (rim("low", 0.05, DVec3::ZERO, DVec3::Y, 0.0), rim("high", 0.05, DVec3::Y, DVec3::Y, 0.0));
     let up = vec![DVec3::Y; low.points().len()];

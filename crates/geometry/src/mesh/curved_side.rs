@@ -35,17 +35,15 @@ pub(crate) fn vertex_normals(mesh: &Mesh) -> Vec<DVec3> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CurvedSide {
     points: [DVec3; 4],
+    bent: bool,
 }
 
 impl CurvedSide {
     pub(crate) fn new([from, to]: [DVec3; 2], normals: [DVec3; 2]) -> Self {
         let third = (to - from) / 3.0;
-        let [a, b] = if normals[0].dot(normals[1]) > LEAST_COSINE {
-            normals.map(|normal| third - normal * third.dot(normal))
-        } else {
-            [third; 2]
-        };
-        Self { points: [from, from + a, to - b, to] }
+        let bent = normals[0].dot(normals[1]) > LEAST_COSINE;
+        let [a, b] = if bent { normals.map(|normal| third - normal * third.dot(normal)) } else { [third; 2] };
+        Self { points: [from, from + a, to - b, to], bent }
     }
 
     /// The point at the share `t` of the way, 0 to 1.
@@ -53,6 +51,16 @@ impl CurvedSide {
         let s = 1.0 - t;
         let [a, b, c, d] = self.points;
         a * (s * s * s) + b * (3.0 * s * s * t) + c * (3.0 * s * t * t) + d * (t * t * t)
+    }
+
+    /// The unit direction there, or zero where the side is straight: then its normals are not those of a round shape.
+    pub(crate) fn bent_along(&self, t: f64) -> DVec3 {
+        let s = 1.0 - t;
+        let [a, b, c, d] = self.points;
+        if !self.bent {
+            return DVec3::ZERO;
+        }
+        ((b - a) * (s * s) + (c - b) * (2.0 * s * t) + (d - c) * (t * t)).normalize_or_zero()
     }
 
     /// The share at which `inside` changes, between its ends of which the first is inside if `first`: by halving, so that
@@ -78,12 +86,15 @@ mod tests {
             let side = CurvedSide::new(ends, ends);
             let off = (0..=20).map(|k| (side.at(f64::from(k) / 20.0).length() - 1.0).abs()).fold(0.0, f64::max);
             let straight = 1.0 - (angle / 2.0).cos();
+            let place = side.at(0.3);
+            assert!(side.bent_along(0.3).dot(place).abs() < 0.1 * angle.powi(3));
             assert!(off < 0.1 * angle.powi(4) && off < 0.05 * straight, "{angle}: {off} of {straight}");
         }
         // An edge stays straight, and so does a side without normals.
         for normals in [[DVec3::Z, DVec3::X], [DVec3::ZERO; 2]] {
             let side = CurvedSide::new([DVec3::ZERO, DVec3::Y], normals);
             assert!(side.at(0.3).distance(DVec3::Y * 0.3) < 1e-15);
+            assert!(side.bent_along(0.3).length() < 1e-15);
         }
     }
 

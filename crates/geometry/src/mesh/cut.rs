@@ -65,7 +65,7 @@ pub(crate) fn cut(mesh: &Mesh, heights: &[f64], inside: &dyn Fn(DVec3) -> bool) 
 #[derive(Clone, Copy)]
 enum Place {
     Corner(usize),
-    Between { from: usize, to: usize, share: f64, vertex: u32 },
+    Between { from: usize, to: usize, share: f64, vertex: u32, along: DVec3 },
 }
 
 struct Cutter<'a> {
@@ -74,8 +74,8 @@ struct Cutter<'a> {
     inside: &'a dyn Fn(DVec3) -> bool,
     vertex_normals: Vec<DVec3>,
     renumbered: Vec<Option<u32>>,
-    /// New vertices by the side they cut, and the share of the way along it, the lower index first.
-    crossings: BTreeMap<[u32; 2], (u32, f64)>,
+    /// New vertices by the side they cut, with the share of the way along it, the lower index first, and its direction.
+    crossings: BTreeMap<[u32; 2], (u32, f64, DVec3)>,
     positions: Vec<DVec3>,
     corners: Vec<u32>,
     counts: Vec<usize>,
@@ -124,9 +124,10 @@ impl Cutter<'_> {
             if let Some(normals) = self.mesh.normals() {
                 self.normals.push(match place {
                     Place::Corner(corner) => normals[*corner],
-                    Place::Between { from, to, share, .. } => {
+                    Place::Between { from, to, share, along, .. } => {
                         let between = normals[*from].lerp(normals[*to], *share);
-                        between.try_normalize().unwrap_or(normals[*from])
+                        // Square to the bent side: where its curvature changes, the mean of both ends is not.
+                        (between - *along * along.dot(between)).try_normalize().unwrap_or(normals[*from])
                     }
                 });
             }
@@ -152,7 +153,7 @@ impl Cutter<'_> {
     fn crossing(&mut self, from: usize, to: usize) -> Place {
         let (a, b) = (self.vertex(from), self.vertex(to));
         let edge = [a.min(b), a.max(b)];
-        let (vertex, share) = match self.crossings.get(&edge) {
+        let (vertex, share, along) = match self.crossings.get(&edge) {
             Some(found) => *found,
             None => {
                 let [low, high] = edge.map(|v| v as usize);
@@ -161,11 +162,12 @@ impl Cutter<'_> {
                 let share = side.crossing(self.heights[low] > 0.0, self.inside);
                 let vertex = self.positions.len() as u32;
                 self.positions.push(side.at(share));
-                self.crossings.insert(edge, (vertex, share));
-                (vertex, share)
+                let found = (vertex, share, side.bent_along(share));
+                self.crossings.insert(edge, found);
+                found
             }
         };
-        Place::Between { from, to, share: if a == edge[0] { share } else { 1.0 - share }, vertex }
+        Place::Between { from, to, share: if a == edge[0] { share } else { 1.0 - share }, vertex, along }
     }
 
     fn finish(self) -> Result<Mesh, MeshError> {

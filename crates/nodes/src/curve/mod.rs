@@ -13,4 +13,5 @@ pub(crate) mod resample;
 pub(crate) mod simplify;
 pub(crate) mod smooth;
 pub(crate) mod sort;
+pub(crate) mod split_border;
 pub(crate) mod transform;

@@ -5,8 +5,10 @@ use glam::DVec3;
 use maquette_geometry::border::{Border, boundaries, boundary_along};
 use maquette_geometry::curve::{ArcLength, closest};
 use maquette_geometry::mesh::Topology;
-use maquette_geometry::mesh::resample_border::{ResampleBorderError, ResampleBorderOptions, resample_border};
-use maquette_graph::{AtPort, Choices, NodeError, NodeKind, Unit};
+use maquette_geometry::mesh::resample_border::{
+    ResampleBorderError, ResampleBorderOptions, resample_border, resample_border_onto,
+};
+use maquette_graph::{AtPort, Choices, NodeError, NodeKind, OptionalInput, Ports, Unit};
 
 use crate::wire;
 
@@ -58,6 +60,10 @@ pub(crate) fn kind() -> NodeKind {
         true,
         "Lay a smooth curve (C2 spline) through the border first; otherwise keep to its straight sides.",
     );
+    let like = node.optional::<wire::Borders>(
+        "like",
+        "The new border has the points of this one, that of a patch made between its sides, and not `points` even ones.",
+    );
     let resampled = node.output::<wire::Mesh>("mesh", "The mesh with the new border.");
     let borders = node.output::<wire::Borders>("borders", "The new border, ready for `blend`.");
     let went =
@@ -67,14 +73,7 @@ pub(crate) fn kind() -> NodeKind {
         let loops = Topology::new(body).boundary_loops();
         let before: Vec<Border> = boundaries(body).at(mesh)?;
         let point = DVec3::from_array(ports.read(near).0);
-        let other = match ports.read_optional(beside).map(|borders| borders.0.as_slice()) {
-            None => None,
-            Some([border]) => Some(border),
-            Some(several) => {
-                let message = "borders arrive where one is wanted: choose it with the `which` of a boundary-of node";
-                return Err(format!("{} {message}", several.len())).at(beside);
-            }
-        };
+        let (other, wanted) = (only(ports, beside)?, only(ports, like)?);
         let place = |border: &Border| match (other, ports.choice(which)) {
             (Some(other), _) => border.mean_distance(other.curve()),
             (None, Which::Longest) => -ArcLength::of(border.curve()).length(),
@@ -92,7 +91,15 @@ pub(crate) fn kind() -> NodeKind {
             start: DVec3::from_array(ports.read(start).0),
             smooth: ports.value(smooth),
         };
-        let made = match resample_border(body, rim, &options, &ports.progress_callback()) {
+        let progress = ports.progress_callback();
+        let made = match wanted {
+            Some(wanted) => resample_border_onto(body, rim, wanted.curve(), &progress),
+            None => resample_border(body, rim, &options, &progress),
+        };
+        let made = match made {
+            Err(error @ (ResampleBorderError::Open { .. } | ResampleBorderError::Away { .. })) => {
+                return Err(error).at(like);
+            }
             Err(ResampleBorderError::Stopped) => return Err(NodeError::Cancelled),
             Err(error @ ResampleBorderError::Points { .. }) => return Err(error).at(points),
             Err(error @ ResampleBorderError::Start { .. }) => return Err(error).at(start),
@@ -106,4 +113,16 @@ pub(crate) fn kind() -> NodeKind {
         Ok(())
     });
     node
+}
+
+/// The one border of an optional input.
+fn only<'a>(ports: &Ports<'a>, input: OptionalInput<wire::Borders>) -> Result<Option<&'a Border>, NodeError> {
+    match ports.read_optional(input).map(|borders| borders.0.as_slice()) {
+        None => Ok(None),
+        Some([border]) => Ok(Some(border)),
+        Some(several) => {
+            let message = "borders arrive where one is wanted: choose it with the `which` of a boundary-of node";
+            Err(format!("{} {message}", several.len())).at(input)
+        }
+    }
 }

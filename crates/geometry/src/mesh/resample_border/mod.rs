@@ -15,7 +15,7 @@ use glam::{DVec2, DVec3};
 use super::distance::{MeshDistance, NoPolygons, nearest_on_triangle};
 use super::triangulate::polygon_triangles;
 use super::{Mesh, MeshError};
-use crate::curve::{SplineError, place};
+use crate::curve::{Curve, SplineError, closest, place};
 use collar::Collar;
 use rim::Rim;
 
@@ -28,6 +28,9 @@ const EVEN: f64 = 3.0;
 /// Distances from the border within which faces go, in sides of the new border: the first that allows a strip without
 /// folds.
 const REACHES: [f64; 5] = [0.6, 0.9, 1.35, 2.0, 3.0];
+
+/// Largest distance from the border of a curve whose points it takes, as a share of the border's size.
+const AWAY: f64 = 0.1;
 
 /// How a border is resampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,6 +98,20 @@ pub enum ResampleBorderError {
         /// Where the strip folds.
         fold: DVec3,
     },
+    /// An open curve whose points are wanted.
+    #[error("curve \"{ring}\" is open: a border takes the points of a closed one")]
+    Open {
+        /// Name of the curve.
+        ring: String,
+    },
+    /// A curve that does not lie along the border.
+    #[error("curve \"{ring}\" leaves the border at {}: give one that lies along it", place(*at))]
+    Away {
+        /// Name of the curve.
+        ring: String,
+        /// The first of its points that is too far off.
+        at: DVec3,
+    },
     /// Points of the border that carry no spline.
     #[error(transparent)]
     Spline(#[from] SplineError),
@@ -138,12 +155,52 @@ pub fn resample_border(
         return Ok(ResampledBorder { mesh: mesh.clone(), border, replaced: [0; 2] });
     }
     let even = rim.even(options.points, start, options.smooth)?;
-    let at = rim.centre();
     told(0.2)?;
+    replaced(mesh, &rim, &even, progress)
+}
+
+/// Gives the border `vertices` the points of another closed curve that lies along it, in their order or, where that
+/// curve runs the other way, against it: those of a surface that was made between its sides.
+///
+/// # Errors
+/// As [`resample_border`]; also where the curve is open or leaves the border by more than a tenth of its size.
+pub fn resample_border_onto(
+    mesh: &Mesh,
+    vertices: &[u32],
+    ring: &Curve,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<ResampledBorder, ResampleBorderError> {
+    use ResampleBorderError as E;
+    if !progress(0.0) {
+        return Err(E::Stopped);
+    }
+    let rim = Rim::of(mesh, vertices).ok_or(E::NoBorder)?;
+    let (low, high) = rim.curve.bounds();
+    let far = |p: &&DVec3| closest(&rim.curve, **p).distance > AWAY * low.distance(high);
+    if !ring.is_closed() {
+        return Err(E::Open { ring: ring.name().to_owned() });
+    }
+    if let Some(at) = ring.points().iter().find(far) {
+        return Err(E::Away { ring: ring.name().to_owned(), at: *at });
+    }
+    let even = rim.onto(ring)?;
+    replaced(mesh, &rim, &even, progress)
+}
+
+/// The mesh with other faces along a border.
+fn replaced(
+    mesh: &Mesh,
+    rim: &Rim,
+    even: &rim::Even,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<ResampledBorder, ResampleBorderError> {
+    use ResampleBorderError as E;
+    let told = |share: f64| if progress(share) { Ok(()) } else { Err(E::Stopped) };
+    let at = rim.centre();
     let mut fold = at;
     for (attempt, reach) in REACHES.into_iter().enumerate() {
         told(0.2 + 0.1 * attempt as f64)?;
-        let collar = match Collar::of(mesh, &rim, reach * even.spacing) {
+        let collar = match Collar::of(mesh, rim, reach * even.spacing) {
             Ok(collar) => collar,
             // Wider ones are no better.
             Err(other) if attempt == 0 => return Err(E::NearAnother { at, other }),
@@ -154,7 +211,7 @@ pub fn resample_border(
         match strip::strip(&outer, &inner, &|| told(0.7))? {
             Ok(faces) => {
                 told(0.8)?;
-                return Ok(assembled(mesh, &collar, &even, &faces)?);
+                return assembled(mesh, &collar, even, &faces);
             }
             Err(worst) => fold = worst,
         }

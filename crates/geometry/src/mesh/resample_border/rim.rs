@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::ResampleBorderError;
-use crate::curve::{ArcLength, CubicSpline, Curve, SplineLength, chord_parameters};
+use crate::curve::{ArcLength, CubicSpline, Curve, SplineLength, chord_parameters, closest};
 use crate::mesh::{Mesh, measure};
 
 /// Vertices of a border nearer to the one before than this share of the mean distance carry no spline: what is uncertain
@@ -69,8 +69,9 @@ impl Rim {
 
     /// `count` points at equal distances, the first where the border reaches farthest in a direction.
     pub(super) fn even(&self, count: usize, start: DVec3, smooth: bool) -> Result<Even, ResampleBorderError> {
-        let (points, normals) =
-            if smooth { self.spread_out() } else { (self.curve.points().to_vec(), self.normals.clone()) };
+        let kept = if smooth { self.spread_out() } else { (0..self.vertices.len()).collect() };
+        let (points, normals): (Vec<DVec3>, Vec<DVec3>) =
+            kept.iter().map(|k| (self.curve.points()[*k], self.normals[*k])).unzip();
         let parameters = chord_parameters(&points, true);
         let normal_spline = CubicSpline::periodic(parameters.clone(), normals)?;
         let line = if smooth {
@@ -90,8 +91,24 @@ impl Rim {
         Ok(Even { points, normals, spacing })
     }
 
-    /// The points and normals without those that are next to one another.
-    fn spread_out(&self) -> (Vec<DVec3>, Vec<DVec3>) {
+    /// Given points along the border, run like it.
+    pub(super) fn onto(&self, ring: &Curve) -> Result<Even, ResampleBorderError> {
+        let arc = ArcLength::of(&self.curve);
+        let kept = self.spread_out();
+        let mut parameters: Vec<f64> = kept.iter().map(|k| arc.cumulative()[*k]).collect();
+        parameters.push(arc.length() + parameters[0]);
+        let normals = CubicSpline::periodic(parameters, kept.iter().map(|k| self.normals[*k]).collect())?;
+        let mut points = ring.points().to_vec();
+        if ring.area_vector().dot(self.curve.area_vector()) < 0.0 {
+            points.reverse();
+        }
+        let normal = |p: &DVec3| normals.position(closest(&self.curve, *p).arc_length).normalize_or_zero();
+        let normals = points.iter().map(normal).collect();
+        Ok(Even { spacing: arc.length() / points.len() as f64, points, normals })
+    }
+
+    /// The vertices without those that are next to one another.
+    fn spread_out(&self) -> Vec<usize> {
         let arc = ArcLength::of(&self.curve);
         let least = TOO_NEAR * arc.length() / self.vertices.len() as f64;
         let mut kept: Vec<usize> = Vec::with_capacity(self.vertices.len());
@@ -107,7 +124,7 @@ impl Rim {
         if kept.len() < 3 {
             kept = (0..self.vertices.len()).collect();
         }
-        (kept.iter().map(|k| self.curve.points()[*k]).collect(), kept.iter().map(|k| self.normals[*k]).collect())
+        kept
     }
 }
 
