@@ -286,17 +286,6 @@ pub enum GenerateError {
         /// Names of the rails as they came.
         names: [String; 4],
     },
-    /// Numbers of curves no case exists for.
-    #[error(
-        "no generator for {open} open and {closed} closed curve(s): give 4 open ones (the left and right outline of \
-         two views, each cut where the two meet), or 2 and more open ones that run between 2 closed ones"
-    )]
-    Unsupported {
-        /// Open curves found.
-        open: usize,
-        /// Closed curves found.
-        closed: usize,
-    },
     /// Depth or detail along the rails cannot be smoothed.
     #[error("the rails cannot be smoothed along their length in double precision: scale them to metres")]
     NotSmoothable,
