@@ -12,7 +12,7 @@ use crate::wire;
 /// The lower left and the upper right corner of paths, in SVG units, y down; none where there are no points.
 fn extent(paths: &[svg::Path2d]) -> Option<[DVec2; 2]> {
     let points = paths.iter().flat_map(|path| &path.points).map(|p| [*p, *p]);
-    let bounds = points.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)]);
+    let bounds = points.reduce(|[low, high], [p, _]| [p.min(low), p.max(high)]);
     bounds.map(|[low, high]| [DVec2::new(low.x, high.y), DVec2::new(high.x, low.y)])
 }
 
