@@ -1,6 +1,7 @@
 //! Why rails make no surface.
 
 use crate::beam::BeamError;
+use crate::border::BorderError;
 use crate::curve::NotSolvable;
 use crate::sections::SectionsError;
 
@@ -101,20 +102,13 @@ pub enum GenerateError {
         /// The snap, metres.
         snap: f64,
     },
-    /// Directions that do not match the points of a border.
-    #[error("{found} direction(s) given for border \"{border}\" of {needed} points: give one a point")]
-    DirectionCount {
-        /// Name of the border.
-        border: String,
-        /// Directions found.
-        found: usize,
-        /// Points of the border.
-        needed: usize,
-    },
+    /// Directions that do not suit a border.
+    #[error(transparent)]
+    Border(#[from] BorderError),
     /// A place at which a neighbour has no direction.
     #[error(
         "the neighbour of border \"{border}\" has no direction at ({:.4}, {:.4}, {:.4}): its curve must lie beside the \
-         border, not on it, and directions must be finite and not zero", point.x, point.y, point.z
+         border, not on it, and directions must not turn back between two points", point.x, point.y, point.z
     )]
     NoDirection {
         /// Name of the border.
