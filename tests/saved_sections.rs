@@ -127,7 +127,8 @@ fn open_strokes_are_fitted_and_a_surface_goes_through_them() {
 #[test]
 fn the_human_stands_on_65_sections() {
     let saved = Saved::load("human");
-    let evaluation = saved.evaluate(&mut Evaluator::default(), &["human", "trunk", "joints", "body", "both sides"]);
+    let mut evaluator = Evaluator::default();
+    let evaluation = saved.evaluate(&mut evaluator, &["human", "trunk", "joints", "body", "both sides"]);
     let of = |node: &str, name: &str| figure(&saved, &evaluation, node, name);
     // The tolerances of the thesis, and its bound of 15 harmonics; hips and torso within 4 mm at the worst point.
     for (node, mean, most) in
@@ -139,7 +140,15 @@ fn the_human_stands_on_65_sections() {
     assert!(of("left arm", "fitted/mean-harmonics") <= 4.0 && of("left leg", "fitted/mean-harmonics") <= 4.0);
     assert_eq!(sections(&saved, &evaluation, "trunk").len(), 34);
     // Parts that share a section meet without a crease, and the patches of the hips keep only the corner at the back.
-    assert!(of("joints", "largest-gap") < 1e-9 && of("joints", "largest-part-angle") < 0.01);
+    assert!(report(&saved, &evaluation, "joints").figures.is_empty(), "measured on request only");
+    let [human, joints] = ["human", "joints"].map(|name| saved.node(name));
+    let request = Saved::request(&[human]).examine_only(&[joints]);
+    let examined = evaluator.evaluate(&saved.catalogue, &saved.graph, &request);
+    let of_joints = |name: &str| figure(&saved, &examined, "joints", name);
+    assert!(of_joints("largest-gap") < 1e-9 && of_joints("largest-part-angle") < 0.01);
+    // Three seams between four parts, and the patches of each.
+    let rows = &report(&saved, &examined, "joints").table("joints").unwrap().rows;
+    assert!(rows.len() > 3 && report(&saved, &examined, "human").figures.is_empty(), "{rows:?}");
     // Per vertex of the mesh it replaces the body has far fewer constants than the thesis's 7,530 for 12,426.
     let constants =
         of("trunk", "constants") + 2.0 * (of("left arm", "fitted/constants") + of("left leg", "fitted/constants"));

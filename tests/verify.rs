@@ -113,6 +113,26 @@ fn the_memo_answers_what_a_fresh_evaluation_gives() {
 }
 
 #[test]
+fn what_is_measured_on_request_can_be_limited_and_is_not_measured_otherwise() {
+    let folder = TempDir::new().unwrap();
+    let out = folder.path().join("human.glb");
+    let run = |more: &[&str]| {
+        let arguments = ["run", "graphs/human.ron", "-o", str(&out), "--json"];
+        maquette(&[&arguments, more].concat())
+    };
+    // The node that measures is not the result but before it.
+    let (code, _, said) =
+        run(&["--fail-if", "joints.largest-gap > 1e-9", "--fail-if", "max(joints.joints.gap) > 1e-9"]);
+    assert_eq!((code, said.as_str()), (0, ""));
+    let (code, _, said) = run(&["--fail-if", "joints.joints.angle < 200"]);
+    assert!(code == 1 && said.contains("node \"joints\", joint \"parts 0 and 1\": angle is "), "{said}");
+    let (code, plain, _) = run(&[]);
+    assert!(code == 0 && !plain.contains("largest-part-angle"), "{plain}");
+    let (code, report, _) = run(&["--report"]);
+    assert!(code == 0 && report.contains("largest-part-angle"), "{report}");
+}
+
+#[test]
 fn limits_fail_the_run_and_say_node_and_value() {
     let folder = TempDir::new().unwrap();
     let out = folder.path().join("vest.glb");

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use glam::DVec3;
 use maquette_geometry::file_format::FileFormat;
+use maquette_geometry::mesh::measure::points_bounds;
 use maquette_geometry::scene::Scene;
 use maquette_graph::{CancelToken, Catalogue, Evaluator, Outcome, OutcomeState};
 use serde_json::{Value as Json, json};
@@ -333,10 +334,7 @@ fn node_json(outcome: &Outcome) -> Json {
 }
 
 fn bounds(points: &[DVec3]) -> Json {
-    match points.iter().fold(None, |bounds: Option<(DVec3, DVec3)>, p| {
-        let (low, high) = bounds.unwrap_or((*p, *p));
-        Some((low.min(*p), high.max(*p)))
-    }) {
+    match points_bounds(points.iter().copied()) {
         Some((low, high)) => json!({ "min": low.to_array(), "max": high.to_array() }),
         None => Json::Null,
     }

@@ -55,6 +55,7 @@ pub(crate) struct Wanted {
     revision: u64,
     targets: Vec<NodeId>,
     curvature: bool,
+    examined: Vec<NodeId>,
 }
 
 /// The editor.
@@ -238,7 +239,13 @@ impl App {
         let mut targets = drawn.clone();
         targets.extend(active.filter(|id| !drawn.contains(id)));
         let curvature = self.settings.shading == Shading::Curvature;
-        let wanted = Wanted { revision: self.document.revision(), targets, curvature };
+        // What costs much is measured of the node that is looked into, while it is.
+        let is_looked_into = dock::is_shown(&self.tree, self.maximised, Pane::Data);
+        let measures = |id: &NodeId| {
+            graph.node(*id).and_then(|node| node.acting_kind()).is_some_and(|kind| kind.has_examination())
+        };
+        let examined = active.filter(|id| is_looked_into && measures(id)).into_iter().collect();
+        let wanted = Wanted { revision: self.document.revision(), targets, curvature, examined };
         if self.submitted.as_ref() == Some(&wanted) {
             return;
         }
@@ -252,7 +259,7 @@ impl App {
             folder: self.document.folder(),
             project: self.document.project(),
             curvature,
-            examine: false,
+            examined: wanted.examined.clone(),
         });
         self.submitted = Some(wanted);
     }

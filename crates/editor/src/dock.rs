@@ -83,6 +83,14 @@ pub(crate) fn tile_of(tree: &Tree<Pane>, pane: Pane) -> Option<TileId> {
     tree.tiles.find_pane(&pane)
 }
 
+/// Whether a panel can be seen: no other tab is before it, and no other panel has the window for itself.
+pub(crate) fn is_shown(tree: &Tree<Pane>, maximised: Option<Pane>, pane: Pane) -> bool {
+    match maximised {
+        Some(alone) => alone == pane,
+        None => tile_of(tree, pane).is_some_and(|tile| tree.active_tiles().contains(&tile)),
+    }
+}
+
 /// Brings a panel to the front, or back, where it was closed.
 pub(crate) fn reveal(tree: &mut Tree<Pane>, pane: Pane) {
     let tile = match tile_of(tree, pane) {

@@ -8,13 +8,12 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 use maquette_geometry::curve::Curve;
 use maquette_geometry::mesh::crease::{CREASE_DEGREES, creased_normals};
-use maquette_geometry::mesh::{Mesh, triangles};
+use maquette_geometry::mesh::measure::points_bounds;
+use maquette_geometry::mesh::{Mesh, mean_curvature, triangles};
 use maquette_geometry::scene::Material;
 use maquette_geometry::surface::tessellate::{Tessellation, tessellate};
 use maquette_graph::{Evaluation, NodeId, Value};
 use maquette_nodes::wire;
-
-use crate::mean_curvature::mean_curvature;
 
 /// A corner of a mesh as the graphics card gets it.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -182,7 +181,7 @@ fn of_surface(surface: &wire::Surface, curvature: bool) -> Option<Drawable> {
 }
 
 fn bounds(points: impl Iterator<Item = DVec3>) -> Option<[DVec3; 2]> {
-    points.map(|p| [p, p]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+    points_bounds(points).map(Into::into)
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "the graphics card takes single precision")]

@@ -30,8 +30,8 @@ pub(crate) struct Job {
     pub(crate) project: Project,
     /// Whether the curvature of meshes is wanted.
     pub(crate) curvature: bool,
-    /// Whether what costs much is measured too.
-    pub(crate) examine: bool,
+    /// The nodes of which is measured what costs too much for every evaluation.
+    pub(crate) examined: Vec<NodeId>,
 }
 
 /// What came of it.
@@ -236,8 +236,8 @@ fn evaluate(
     cancel: &CancelToken,
 ) -> Finished {
     let listener = Listener { shared, begun: Instant::now() };
-    let request = Request::nodes(&job.targets).events(&listener).cancel(cancel).base(&job.folder).project(&job.project);
-    let request = if job.examine { request.examine() } else { request };
+    let request = Request::nodes(&job.targets).examine_only(&job.examined);
+    let request = request.events(&listener).cancel(cancel).base(&job.folder).project(&job.project);
     let evaluation = evaluator.evaluate(catalogue, &job.graph, &request);
     let shown = drawables.of(&evaluation, &job.drawn, job.curvature);
     let spans = std::mem::take(&mut shared.state().spans);

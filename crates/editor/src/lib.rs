@@ -14,7 +14,6 @@ mod dock;
 pub mod document;
 mod drawable;
 mod evaluation_worker;
-mod mean_curvature;
 mod naming;
 mod panel;
 mod recovery;

@@ -62,6 +62,19 @@ fn dragging_a_slider_is_one_step_and_resetting_it_another() {
 }
 
 #[test]
+fn what_costs_much_is_measured_of_the_node_whose_data_is_looked_at() {
+    let mut window = opened(&graph("vest.ron"));
+    select(&mut window, "vest");
+    let faults = |window: &Window| window.query_all_by_label_contains("faults 0.0").count();
+    assert_eq!(faults(&window), 0);
+    click(&mut window, "Data");
+    settle(&mut window);
+    assert_eq!(faults(&window), 1);
+    select(&mut window, "side rail");
+    assert_eq!(faults(&window), 0);
+}
+
+#[test]
 fn saving_and_opening_again_gives_the_same_text() {
     let (_folder, path) = copy();
     let mut window = opened(&path);

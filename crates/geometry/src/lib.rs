@@ -13,6 +13,7 @@ pub mod generate;
 pub mod linear_solver;
 pub mod mesh;
 pub mod outline;
+mod polygon;
 pub mod primitive;
 pub mod scene;
 pub mod sections;

@@ -274,8 +274,8 @@ impl NodeKind {
         TableHandle { index: self.tables.len() - 1 }
     }
 
-    /// States how to measure what costs too much for every evaluation. It runs on the outputs, only for nodes asked
-    /// for with [`crate::Request::examine`], and is remembered with them. It must depend on the outputs alone.
+    /// States how to measure what costs too much for every evaluation. It runs on the outputs, only where
+    /// [`crate::Request::examine`] asks for it, and is remembered with them. It must depend on the outputs alone.
     pub fn examine(&mut self, run: impl Fn(&mut Examination<'_>) -> Result<(), NodeError> + Send + Sync + 'static) {
         self.examine = Some(Arc::new(run));
     }
@@ -361,6 +361,11 @@ impl NodeKind {
 
     pub(crate) fn evaluate_fn(&self) -> Option<&EvaluateFn> {
         self.evaluate.as_deref()
+    }
+
+    /// Whether it measures something on request only ([`NodeKind::examine`]).
+    pub fn has_examination(&self) -> bool {
+        self.examine.is_some()
     }
 
     pub(crate) fn examine_fn(&self) -> Option<&ExamineFn> {

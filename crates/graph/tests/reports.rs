@@ -104,6 +104,45 @@ fn an_examination_runs_on_request_once_and_without_the_node() {
     assert_eq!(rig.log, ["hit rows", "planned 0"]);
 }
 
+/// A node that takes the number of `rows` and measures nothing, and what comes behind it.
+fn behind() -> maquette_graph::NodeKind {
+    kind("behind", |node| {
+        let number = node.number("number", 0.0, -1e9..=1e9, "A number.");
+        let out = node.output::<f64>("number", "One more.");
+        node.evaluate(move |ports| {
+            ports.write(out, ports.value(number) + 1.0);
+            Ok(())
+        });
+    })
+}
+
+#[test]
+fn what_is_asked_for_depends_on_is_examined_too_and_only_what_is_named_where_names_are_given() {
+    let mut rig = rig(usize::MAX);
+    rig.register(behind());
+    rig.add("behind", "behind");
+    rig.add("rows", "aside");
+    rig.link("rows.number", "behind.number");
+    let [rows, aside, behind] = ["rows", "aside", "behind"].map(|name| rig.id(name));
+    rig.request(Request::nodes(&[behind]));
+    assert_eq!(rig.log, ["planned 2", "started rows", "finished rows", "started behind", "finished behind"]);
+    let found = rig.request(Request::nodes(&[behind]).examine());
+    assert_eq!(rig.log, ["hit rows", "hit behind", "planned 0", "examined rows"]);
+    assert_eq!(report(&found, &rig).figure("sum").map(|sum| sum.value), Some(6.0));
+
+    rig.put("rows.count", maquette_graph::Literal::Integer(4));
+    rig.put("aside.count", maquette_graph::Literal::Integer(5));
+    let without = rig.request(Request::nodes(&[behind, aside]).examine_only(&[aside]));
+    assert!(rig.log.contains(&"examined aside".to_owned()) && !rig.log.contains(&"examined rows".to_owned()));
+    assert!(report(&without, &rig).figures.is_empty());
+    // What nothing asked for depends on is neither run nor examined.
+    rig.put("aside.count", maquette_graph::Literal::Integer(7));
+    rig.request(Request::nodes(&[behind]).examine_only(&[aside, behind]));
+    assert!(!rig.log.iter().any(|line| line.contains("aside") || line.contains("examined")), "{:?}", rig.log);
+    let found = rig.request(Request::nodes(&[behind]).examine_only(&[rows]));
+    assert_eq!(report(&found, &rig).figure("sum").map(|sum| sum.value), Some(8.0));
+}
+
 #[test]
 fn a_failing_examination_is_a_failure_and_a_cancelled_one_is_not() {
     let mut rig = rig(usize::MAX);

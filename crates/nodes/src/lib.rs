@@ -2,6 +2,7 @@
 //! meet. One file a node; [`catalogue`] registers them all.
 
 mod affine;
+mod anchor;
 mod curve;
 mod deform;
 mod fitting;

@@ -4,6 +4,7 @@ use maquette_geometry::deform::Silhouette;
 use maquette_geometry::view::View;
 use maquette_graph::{NodeError, NodeKind, OptionalInput, Ports};
 
+use crate::view_plane::ViewPlane;
 use crate::wire;
 
 /// Handles of the strokes of each view.
@@ -15,9 +16,9 @@ pub(crate) struct SilhouetteInputs {
 impl SilhouetteInputs {
     /// Declares `front`, `side` and `top`, each optional.
     pub(crate) fn declare(node: &mut NodeKind, what: &str) -> Self {
-        let views = [("front", View::FRONT), ("side", View::SIDE), ("top", View::TOP)];
         Self {
-            views: views.map(|(name, view)| {
+            views: ViewPlane::ALL.map(|plane| {
+                let (view, name) = (plane.view(), plane.view().name());
                 (view, node.optional(name, &format!("Strokes of the {name} view: {what} May be left unconnected.")))
             }),
         }

@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 use maquette_geometry::mesh::stroke;
+use maquette_geometry::view::View;
 use maquette_graph::Choices;
 
 /// A view, and with it a plane: front XY, side ZY, top XZ. +X is the model's left, +Y up, +Z its front; metres.
@@ -21,16 +22,26 @@ impl Choices for ViewPlane {
 }
 
 impl ViewPlane {
-    /// The direction in which it looks.
-    pub(crate) fn looks_along(self) -> DVec3 {
+    /// All of them.
+    pub(crate) const ALL: [Self; 3] = [Self::Front, Self::Side, Self::Top];
+
+    /// The view in which the plane is seen as drawn; its depth is the axis of the offset.
+    pub(crate) fn view(self) -> View {
         match self {
-            Self::Front => DVec3::NEG_Z,
-            Self::Side => DVec3::NEG_X,
-            Self::Top => DVec3::NEG_Y,
+            Self::Front => View::FRONT,
+            Self::Side => View::SIDE,
+            Self::Top => View::TOP,
         }
     }
 
-    /// The point in space of a point drawn in the plane.
+    /// The direction in which it looks.
+    pub(crate) fn looks_along(self) -> DVec3 {
+        // A difference, for negation would make the other coordinates -0.0, which what is computed from them shows.
+        DVec3::ZERO - self.view().depth()
+    }
+
+    /// The point in space of a point drawn in the plane: that of the view, with the signs of zeros kept, which the
+    /// view's sums lose and content hashes see.
     pub(crate) fn place(self, drawn: DVec2, offset: f64) -> DVec3 {
         match self {
             Self::Front => DVec3::new(drawn.x, drawn.y, offset),
@@ -82,4 +93,24 @@ impl Choices for Facing {
         (Self(stroke::Facing::Seen), "seen", "the side that is seen"),
         (Self(stroke::Facing::Back), "back", "the side that is farthest behind it"),
     ];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plane_is_that_of_its_view_and_keeps_the_signs_of_zeros() {
+        let bits = |v: DVec3| v.to_array().map(f64::to_bits);
+        for (plane, (listed, name, _)) in ViewPlane::ALL.into_iter().zip(ViewPlane::OPTIONS) {
+            assert_eq!((plane, plane.view().name()), (*listed, *name));
+            let drawn = DVec2::new(0.3, -1.2);
+            assert_eq!(plane.place(drawn, 0.7), plane.view().place(drawn, 0.7));
+            let zeros = plane.place(DVec2::new(-0.0, 0.0), -0.0);
+            assert_eq!(plane.view().flat(zeros), DVec2::ZERO);
+            assert_eq!(zeros.to_array().iter().filter(|c| c.is_sign_negative()).count(), 2);
+        }
+        let looks = ViewPlane::ALL.map(|plane| bits(plane.looks_along()));
+        assert_eq!(looks, [DVec3::NEG_Z, DVec3::NEG_X, DVec3::NEG_Y].map(bits));
+    }
 }

@@ -1,17 +1,12 @@
 //! From what the pen did to what was meant: as smooth as the tolerance allows, with no more points than it needs.
 
 use glam::{DVec2, DVec3};
-use maquette_geometry::curve::{Curve, Resampling, closest, resample, smooth};
+use maquette_geometry::curve::{Curve, Resampling, farthest, resample, smooth};
 
 /// Most points that a stroke gets.
 const MOST_POINTS: usize = 400;
 /// How often the wavelength is halved in the search for the longest one.
 const HALVINGS: usize = 14;
-
-/// The largest distance of points from a curve, metres.
-fn deviation(points: &[DVec3], curve: &Curve) -> f64 {
-    points.iter().map(|point| closest(curve, *point).distance).fold(0.0, f64::max)
-}
 
 /// A line that is nowhere farther than `tolerance` metres from the drawn points, has bends as long as that allows, and as few
 /// points, evenly spread, as bring it within half the tolerance again. Its ends stay. Where nothing can be smoothed (a dot, two
@@ -23,7 +18,7 @@ pub(crate) fn smoothed(drawn: &[DVec2], closed: bool, tolerance: f64) -> Vec<DVe
     let Ok(raw) = Curve::new("stroke", points.clone(), closed) else { return drawn.to_vec() };
     let (low, high) = raw.bounds();
     let size = (high - low).length();
-    let fits = |wave: f64| smooth(&raw, wave).ok().filter(|calm| deviation(&points, calm) <= tolerance);
+    let fits = |wave: f64| smooth(&raw, wave).ok().filter(|calm| farthest(&points, calm) <= tolerance);
     let mut calm = None;
     let mut waves = [0.0, 2.0 * size];
     for _ in 0..HALVINGS {
@@ -40,7 +35,7 @@ pub(crate) fn smoothed(drawn: &[DVec2], closed: bool, tolerance: f64) -> Vec<DVe
     let mut count = if closed { 6 } else { 4 };
     while count < MOST_POINTS {
         if let Ok(few) = resample(&calm, &Resampling::count(count))
-            && deviation(calm.points(), &few) <= 0.5 * tolerance
+            && farthest(calm.points(), &few) <= 0.5 * tolerance
         {
             return few.points().iter().map(|p| p.truncate()).collect();
         }

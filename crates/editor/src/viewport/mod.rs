@@ -13,6 +13,7 @@ use std::sync::Arc;
 
 use egui::{PointerButton, Sense};
 use glam::DVec3;
+use maquette_geometry::mesh::measure::points_bounds;
 use maquette_graph::NodeId;
 
 use crate::command::ViewCommand;
@@ -332,9 +333,8 @@ fn bounds(context: &PanelContext<'_>, wanted: impl Fn(NodeId) -> bool) -> Option
     let shown = context.results.shown().iter().filter(|shown| wanted(shown.node));
     let boxes = shown.flat_map(|shown| shown.drawables.iter().filter_map(|drawable| drawable.bounds));
     let strokes = SketchTarget::all(context.graph()).filter(|target| wanted(target.node)).flat_map(|target| {
-        let places: Vec<[DVec3; 2]> =
-            target.strokes.iter().flat_map(points).map(|p| [target.plane.place(p); 2]).collect();
+        let places: Vec<DVec3> = target.strokes.iter().flat_map(points).map(|p| target.plane.place(p)).collect();
         places
     });
-    boxes.chain(strokes).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+    points_bounds(boxes.flatten().chain(strokes)).map(Into::into)
 }

@@ -26,7 +26,7 @@ pub struct Border {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BorderError {
     /// Another number of directions than of points.
-    #[error("border \"{border}\" has {points} points and {found} directions: give one a point")]
+    #[error("border \"{border}\" has {points} point(s) and {found} direction(s): give one a point")]
     Count {
         /// Name of the curve.
         border: String,
@@ -53,16 +53,8 @@ impl Border {
     /// # Errors
     /// [`BorderError`] where there are too few or too many, or one has no length.
     pub fn new(curve: Curve, directions: Vec<DVec3>) -> Result<Self, BorderError> {
-        let name = || curve.name().to_owned();
-        if directions.len() != curve.points().len() {
-            let points = curve.points().len();
-            return Err(BorderError::Count { border: name(), points, found: directions.len() });
-        }
-        let units: Vec<DVec3> = directions.iter().map(|d| d.normalize_or_zero()).collect();
-        match units.iter().position(|d| *d == DVec3::ZERO || !d.is_finite()) {
-            Some(index) => Err(BorderError::NoDirection { border: name(), index, at: curve.points()[index] }),
-            None => Ok(Self { curve, directions: units }),
-        }
+        let directions = unit_directions(&curve, &directions)?;
+        Ok(Self { curve, directions })
     }
 
     /// The curve.
@@ -98,6 +90,23 @@ impl Border {
     pub fn mean_distance(&self, curve: &Curve) -> f64 {
         let sum: f64 = curve.points().iter().map(|p| closest(&self.curve, *p).distance).sum();
         sum / curve.points().len() as f64
+    }
+}
+
+/// Directions of length 1 from those of any length at the points of a curve.
+///
+/// # Errors
+/// [`BorderError`] where there are too few or too many, or one has no length.
+pub(crate) fn unit_directions(curve: &Curve, directions: &[DVec3]) -> Result<Vec<DVec3>, BorderError> {
+    let (points, border) = (curve.points(), || curve.name().to_owned());
+    if directions.len() != points.len() {
+        return Err(BorderError::Count { border: border(), points: points.len(), found: directions.len() });
+    }
+    // What is not finite comes out as zero, too.
+    let units: Vec<DVec3> = directions.iter().map(|d| d.normalize_or_zero()).collect();
+    match units.iter().position(|d| *d == DVec3::ZERO) {
+        Some(index) => Err(BorderError::NoDirection { border: border(), index, at: points[index] }),
+        None => Ok(units),
     }
 }
 

@@ -42,6 +42,12 @@ pub fn closest(curve: &Curve, point: DVec3) -> Closest {
     Closest { point: found, distance: found.distance(point), arc_length, fraction, segment }
 }
 
+/// The largest distance of points from a curve in metres, zero where there are none: the Hausdorff distance, one way.
+/// [`super::deviation`] compares two curves both ways.
+pub fn farthest(points: &[DVec3], curve: &Curve) -> f64 {
+    points.iter().map(|point| closest(curve, *point).distance).fold(0.0, f64::max)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -80,5 +86,13 @@ mod tests {
         let closed = Curve::new("square", square(), true).unwrap();
         assert_eq!(closest(&closed, DVec3::NAN).segment, 0);
         assert!(closest(&closed, DVec3::splat(1e300)).point.is_finite());
+    }
+
+    #[test]
+    fn the_farthest_point_counts() {
+        let closed = Curve::new("", square(), true).unwrap();
+        let points = [DVec3::new(0.5, 0.25, 0.0), DVec3::new(0.5, -0.5, 0.0), DVec3::new(3.0, 4.0, 0.0)];
+        assert_eq!([1, 2, 3].map(|count| farthest(&points[..count], &closed)), [0.25, 0.5, 13.0_f64.sqrt()]);
+        assert_eq!(farthest(&[], &closed), 0.0);
     }
 }

@@ -15,7 +15,7 @@ mod spread;
 
 pub use arc_length::ArcLength;
 pub use clean::{CleanError, Cleaned, Cleaning, clean, clean_while};
-pub use closest::{Closest, closest};
+pub use closest::{Closest, closest, farthest};
 pub use correspondence::{AxisSource, Decision, SortError, SortOptions, Sorted, sort, sort_while};
 pub(crate) use correspondence::{Started, metres, place, start_nearest};
 pub use deviation::{Deviation, DeviationError, Gap, deviation};

@@ -153,7 +153,7 @@ fn add_cuts(points: &[DVec3], cuts: &mut Vec<usize>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::curve::closest;
+    use crate::curve::farthest;
     use proptest::prelude::*;
 
     fn wave(count: u32, closed: bool) -> Curve {
@@ -167,7 +167,7 @@ mod tests {
     }
 
     fn off(was: &Curve, is: &Curve) -> f64 {
-        was.points().iter().map(|p| closest(is, *p).distance).fold(0.0, f64::max)
+        farthest(was.points(), is)
     }
 
     #[test]

@@ -48,7 +48,7 @@ fn to_segment(point: DVec3, (from, to): (DVec3, DVec3)) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::curve::{Resampling, closest, resample};
+    use crate::curve::{Resampling, farthest, resample};
 
     fn arc(points: u32, closed: bool) -> Curve {
         let turn = if closed { std::f64::consts::TAU } else { 2.0 };
@@ -64,7 +64,7 @@ mod tests {
             for count in [3, 4, 7, 40, 200] {
                 let new = resample(&drawn, &Resampling::count(count)).unwrap();
                 let found = spread(&drawn, &new);
-                let whole = drawn.points().iter().map(|p| closest(&new, *p).distance).fold(0.0, f64::max);
+                let whole = farthest(drawn.points(), &new);
                 assert!((found.off_drawing - whole).abs() < 1e-12, "{closed} {count}: {} {whole}", found.off_drawing);
                 assert!(found.shortest > 0.0 && found.shortest <= found.longest);
             }

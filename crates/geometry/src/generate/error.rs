@@ -1,6 +1,7 @@
 //! Why rails make no surface.
 
 use crate::beam::BeamError;
+use crate::border::BorderError;
 use crate::curve::NotSolvable;
 use crate::sections::SectionsError;
 
@@ -101,20 +102,13 @@ pub enum GenerateError {
         /// The snap, metres.
         snap: f64,
     },
-    /// Directions that do not match the points of a border.
-    #[error("{found} direction(s) given for border \"{border}\" of {needed} points: give one a point")]
-    DirectionCount {
-        /// Name of the border.
-        border: String,
-        /// Directions found.
-        found: usize,
-        /// Points of the border.
-        needed: usize,
-    },
+    /// Directions that do not suit a border.
+    #[error(transparent)]
+    Border(#[from] BorderError),
     /// A place at which a neighbour has no direction.
     #[error(
         "the neighbour of border \"{border}\" has no direction at ({:.4}, {:.4}, {:.4}): its curve must lie beside the \
-         border, not on it, and directions must be finite and not zero", point.x, point.y, point.z
+         border, not on it, and directions must not turn back between two points", point.x, point.y, point.z
     )]
     NoDirection {
         /// Name of the border.
@@ -285,17 +279,6 @@ pub enum GenerateError {
     RailsUnsorted {
         /// Names of the rails as they came.
         names: [String; 4],
-    },
-    /// Numbers of curves no case exists for.
-    #[error(
-        "no generator for {open} open and {closed} closed curve(s): give 4 open ones (the left and right outline of \
-         two views, each cut where the two meet), or 2 and more open ones that run between 2 closed ones"
-    )]
-    Unsupported {
-        /// Open curves found.
-        open: usize,
-        /// Closed curves found.
-        closed: usize,
     },
     /// Depth or detail along the rails cannot be smoothed.
     #[error("the rails cannot be smoothed along their length in double precision: scale them to metres")]

@@ -25,7 +25,6 @@ mod between_closed;
 mod blend;
 #[cfg(test)]
 mod blend_tests;
-mod case;
 mod centring;
 mod detail;
 mod error;
@@ -62,7 +61,6 @@ mod winding;
 pub use arch::{ArchBorder, arch};
 pub use between_closed::{between_closed, through_closed};
 pub use blend::{BlendBorder, blend};
-pub use case::Case;
 pub use detail::{Detail, Method};
 pub use error::GenerateError;
 pub use local_detail::LocalDetail;

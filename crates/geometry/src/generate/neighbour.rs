@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::GenerateError;
 use super::feet::{Feet, Which};
+use crate::border::unit_directions;
 use crate::curve::{ArcLength, Curve, closest};
 
 /// Share of a border's length over which its own direction is taken, so that the facets of its polyline do not show.
@@ -29,20 +30,10 @@ pub enum Neighbour<'a> {
 impl Neighbour<'_> {
     /// Checks that there is a direction for each point of `border`.
     pub(super) fn check(&self, border: &Curve) -> Result<(), GenerateError> {
-        let Self::Directions(directions) = self else { return Ok(()) };
-        if directions.len() != border.points().len() {
-            return Err(GenerateError::DirectionCount {
-                border: border.name().to_owned(),
-                found: directions.len(),
-                needed: border.points().len(),
-            });
+        if let Self::Directions(directions) = self {
+            unit_directions(border, directions)?;
         }
-        match directions.iter().position(|d| d.normalize_or_zero() == DVec3::ZERO) {
-            Some(index) => {
-                Err(GenerateError::NoDirection { border: border.name().to_owned(), point: border.points()[index] })
-            }
-            None => Ok(()),
-        }
+        Ok(())
     }
 
     /// Unit direction from the neighbour into the new surface at `point` of the border, `arc_length` along it.
@@ -200,6 +191,7 @@ pub(super) fn end_slopes(points: &[DVec3]) -> [DVec3; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::border::BorderError;
 
     #[test]
     fn slopes_of_a_cubic_are_exact() {
@@ -224,10 +216,11 @@ mod tests {
         assert!(found.distance(DVec3::new(0.0, 1.0, 1.0).normalize()) < 1e-12);
 
         let short = Neighbour::Directions(&given[..2]).check(&border);
-        assert!(matches!(short, Err(GenerateError::DirectionCount { found: 2, needed: 3, .. })));
+        assert!(matches!(short, Err(GenerateError::Border(BorderError::Count { found: 2, points: 3, .. }))));
         for zero in [DVec3::ZERO, DVec3::NAN] {
             let none = [DVec3::Y, zero, DVec3::Z];
-            assert!(matches!(Neighbour::Directions(&none).check(&border), Err(GenerateError::NoDirection { .. })));
+            let found = Neighbour::Directions(&none).check(&border);
+            assert!(matches!(found, Err(GenerateError::Border(BorderError::NoDirection { index: 1, .. }))));
         }
         let touching = Neighbour::Curve(&border).direction(&border, &arc, 2.0, DVec3::X * 2.0);
         assert!(matches!(touching, Err(GenerateError::NoDirection { .. })));

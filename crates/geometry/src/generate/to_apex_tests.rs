@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::test_shapes::{apart, crease, dome, leaving, mouth, open, out_of_plane, place, placed};
 use super::*;
+use crate::border::BorderError;
 use crate::curve::{ArcLength, Curve, SortOptions, closest, sort};
 
 fn options() -> GenerateOptions {
@@ -132,6 +133,6 @@ fn errors() {
     let mixed = [0, 2, 1, 3].map(|k| rails[k].clone());
     assert!(matches!(refused(&mixed, &rim), GenerateError::Crossing { .. }));
     let few = to_apex(&rails, &rim, Some(Neighbour::Directions(&[DVec3::Y])), &options(), &|_| true);
-    assert!(matches!(few, Err(GenerateError::DirectionCount { .. })));
+    assert!(matches!(few, Err(GenerateError::Border(BorderError::Count { .. }))));
     assert_eq!(to_apex(&rails, &rim, None, &options(), &|_| false), Err(GenerateError::Cancelled));
 }

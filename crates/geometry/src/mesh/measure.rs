@@ -10,8 +10,14 @@ use super::triangulate::triangles;
 
 /// Lowest and highest coordinates of the vertices in metres, or `None` where there is no vertex.
 pub fn bounds(mesh: &Mesh) -> Option<(DVec3, DVec3)> {
-    let first = *mesh.positions().first()?;
-    Some(mesh.positions().iter().fold((first, first), |(low, high), p| (low.min(*p), high.max(*p))))
+    points_bounds(mesh.positions().iter().copied())
+}
+
+/// Lowest and highest coordinates of points in metres, or `None` where there is no point.
+pub fn points_bounds(points: impl IntoIterator<Item = DVec3>) -> Option<(DVec3, DVec3)> {
+    let mut points = points.into_iter();
+    let first = points.next()?;
+    Some(points.fold((first, first), |(low, high), p| (low.min(p), high.max(p))))
 }
 
 /// Diagonal of the box around the vertices in metres; 0 where there is no vertex.
@@ -21,9 +27,7 @@ pub fn diagonal(mesh: &Mesh) -> f64 {
 
 /// Diagonal of the box around points in metres; 0 where there is none.
 pub fn points_diagonal(points: &[DVec3]) -> f64 {
-    let Some(&first) = points.first() else { return 0.0 };
-    let (low, high) = points.iter().fold((first, first), |(low, high), p| (low.min(*p), high.max(*p)));
-    (high - low).length()
+    points_bounds(points.iter().copied()).map_or(0.0, |(low, high)| (high - low).length())
 }
 
 /// Vector area of a loop of points in square metres: its direction is the normal of the loop, its length the area
@@ -237,6 +241,16 @@ mod tests {
         let volumes = shell_volumes(&both, &Topology::new(&both));
         assert!((volumes[0] - 1.0).abs() < 1e-12 && (volumes[1] + 8.0).abs() < 1e-12, "{volumes:?}");
         assert!((signed_volume(&both) + 7.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn bounds_hold_all_points() {
+        let points = [[1.0, -2.0, 0.5], [-1.0, 3.0, 0.0], [0.0, 0.0, -4.0]].map(DVec3::from_array);
+        let wanted = (DVec3::new(-1.0, -2.0, -4.0), DVec3::new(1.0, 3.0, 0.5));
+        assert_eq!(points_bounds(points), Some(wanted));
+        assert_eq!(points_diagonal(&points), wanted.0.distance(wanted.1));
+        assert_eq!(points_bounds([DVec3::ONE]), Some((DVec3::ONE, DVec3::ONE)));
+        assert_eq!((points_bounds([]), points_diagonal(&[])), (None, 0.0));
     }
 
     #[test]

@@ -4,6 +4,7 @@ pub mod adjacency;
 pub mod caps;
 pub mod check;
 pub mod crease;
+mod curvature;
 pub(crate) mod curved_side;
 pub mod cut;
 pub mod distance;
@@ -28,6 +29,7 @@ pub mod weld;
 
 pub use adjacency::Adjacency;
 pub use check::{MeshCheck, check, check_while};
+pub use curvature::mean_curvature;
 pub use distance::{MeshDistance, Nearest};
 pub use manifold::ManifoldReport;
 pub use polygon::{Mesh, MeshError};

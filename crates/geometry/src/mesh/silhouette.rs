@@ -6,6 +6,7 @@ use i_overlay::float::simplify::SimplifyShape;
 
 use super::{Mesh, triangles};
 use crate::curve::{Curve, CurveError};
+use crate::polygon::signed_area;
 use crate::view::View;
 
 /// Triangles between two questions whether to go on.
@@ -189,12 +190,6 @@ fn loops(edges: &[Edge]) -> Vec<Vec<u32>> {
         loops.push(around);
     }
     loops
-}
-
-fn signed_area(points: &[DVec2]) -> f64 {
-    let origin = points.first().copied().unwrap_or_default();
-    let next = points.iter().cycle().skip(1);
-    points.iter().zip(next).map(|(p, q)| (*p - origin).perp_dot(*q - origin)).sum::<f64>() / 2.0
 }
 
 #[cfg(test)]

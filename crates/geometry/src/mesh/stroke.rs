@@ -8,6 +8,7 @@ use super::cut::cut;
 use super::distance::NoPolygons;
 use super::{Mesh, MeshError, MeshRays, measure};
 use crate::curve::{ArcLength, Curve, CurveError};
+use crate::polygon::encloses;
 
 /// Which of the sides of a mesh that lie behind one another in a view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -150,7 +151,7 @@ pub fn cut_along(
     let flat = |p: DVec3| DVec2::new(p.dot(e1), p.dot(e2));
     let outline: Vec<DVec2> = stroke.points().iter().map(|p| flat(*p)).collect();
     let places: Vec<DVec2> = mesh.positions().iter().map(|p| flat(*p)).collect();
-    let mut inside: Vec<bool> = places.iter().map(|p| is_inside(&outline, *p)).collect();
+    let mut inside: Vec<bool> = places.iter().map(|p| encloses(&outline, *p)).collect();
     if !inside.contains(&true) {
         return Err(StrokeError::NothingInside { stroke: name() });
     }
@@ -164,7 +165,7 @@ pub fn cut_along(
     // The sign alone counts; where along a side the cut is, the outline tells.
     let size = measure::diagonal(mesh).max(f64::MIN_POSITIVE);
     let heights: Vec<f64> = inside.iter().map(|within| if kept(*within) { size } else { -size }).collect();
-    Ok(cut(mesh, &heights, &|p| kept(is_inside(&outline, flat(p))))?)
+    Ok(cut(mesh, &heights, &|p| kept(encloses(&outline, flat(p))))?)
 }
 
 fn unit(direction: DVec3) -> Result<DVec3, StrokeError> {
@@ -176,18 +177,6 @@ fn behind(mesh: &Mesh, stroke: &Curve) -> f64 {
     let Some((low, high)) = measure::bounds(mesh) else { return 0.0 };
     let (from, to) = stroke.bounds();
     2.0 * (low.min(from).distance(high.max(to)) + f64::MIN_POSITIVE)
-}
-
-/// Even-odd rule.
-fn is_inside(outline: &[DVec2], p: DVec2) -> bool {
-    let mut inside = false;
-    for (i, a) in outline.iter().enumerate() {
-        let b = outline[(i + 1) % outline.len()];
-        if (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y) {
-            inside = !inside;
-        }
-    }
-    inside
 }
 
 /// Of the pieces inside, leaves the one of which most vertices are seen.

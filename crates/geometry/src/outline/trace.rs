@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3};
 
 use super::{Mask, OutlineError};
 use crate::curve::Curve;
+use crate::polygon;
 
 /// Most points of all outlines of a picture, so that a texture does not take the machine.
 const MAX_POINTS: usize = 200_000;
@@ -213,8 +214,7 @@ impl Ring {
         }
         let first = (0..points.len()).min_by(|a, b| by_place(points[*a], points[*b]))?;
         points.rotate_left(first);
-        let origin = points[0];
-        let area = points.windows(2).map(|pair| (pair[0] - origin).perp_dot(pair[1] - origin)).sum::<f64>() / 2.0;
+        let area = polygon::signed_area(&points);
         let bounds = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         let (low, high) = points.iter().fold(bounds, |(low, high), p| (low.min(*p), high.max(*p)));
         Some(Self { points, area, low, high })
@@ -225,13 +225,7 @@ impl Ring {
         if other.low.cmplt(self.low).any() || other.high.cmpgt(self.high).any() {
             return false;
         }
-        let point = other.points[0];
-        let count = self.points.len();
-        let crossed = |k: &usize| {
-            let (a, b) = (self.points[*k], self.points[(k + 1) % count]);
-            (a.y > point.y) != (b.y > point.y) && point.x < a.x + (b.x - a.x) * (point.y - a.y) / (b.y - a.y)
-        };
-        (0..count).filter(crossed).count() % 2 == 1
+        polygon::encloses(&self.points, other.points[0])
     }
 
     fn outline(self, name: String, hole_in: Option<usize>, mask: &Mask) -> Result<Outline, OutlineError> {

@@ -65,7 +65,7 @@ pub struct Outcome {
 #[derive(Clone, Debug, Default)]
 pub struct Evaluation {
     pub(crate) outcomes: BTreeMap<NodeId, Outcome>,
-    /// The kinds of the nodes that were asked for.
+    /// The kinds of the nodes that were asked for, or examined.
     pub(crate) kinds: BTreeMap<NodeId, Arc<NodeKind>>,
     /// Time of the whole evaluation.
     pub duration: Duration,

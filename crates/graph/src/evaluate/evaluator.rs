@@ -46,7 +46,15 @@ pub struct Request<'a> {
     cancel: CancelToken,
     base: PathBuf,
     project: Option<Project>,
-    examine: bool,
+    examined: Examined,
+}
+
+/// Of which nodes is measured what their kinds measure on request only.
+#[derive(Clone, Debug)]
+enum Examined {
+    Nothing,
+    Everything,
+    Only(Vec<NodeId>),
 }
 
 impl<'a> Request<'a> {
@@ -58,7 +66,7 @@ impl<'a> Request<'a> {
             cancel: CancelToken::new(),
             base: PathBuf::new(),
             project: None,
-            examine: false,
+            examined: Examined::Nothing,
         }
     }
 
@@ -74,10 +82,33 @@ impl<'a> Request<'a> {
         Self { cancel: cancel.clone(), ..self }
     }
 
-    /// Asks as well for what the kinds of these nodes measure on request only ([`crate::NodeKind::examine`]).
+    /// Asks as well for what the kinds of these nodes, and of those they depend on, measure on request only
+    /// ([`crate::NodeKind::examine`]). Nodes within bodies are not examined.
     #[must_use]
     pub fn examine(self) -> Self {
-        Self { examine: true, ..self }
+        Self { examined: Examined::Everything, ..self }
+    }
+
+    /// As [`Request::examine`], of these nodes alone. Those on which nothing asked for depends are left out.
+    #[must_use]
+    pub fn examine_only(self, nodes: &[NodeId]) -> Self {
+        Self { examined: Examined::Only(nodes.to_vec()), ..self }
+    }
+
+    /// The nodes that are to be examined and can be, in the order of the graph.
+    fn to_examine(&self, graph: &Graph) -> Vec<NodeId> {
+        let wanted = |id: &NodeId| match &self.examined {
+            Examined::Nothing => false,
+            Examined::Everything => true,
+            Examined::Only(nodes) => nodes.contains(id),
+        };
+        if matches!(self.examined, Examined::Nothing) {
+            return Vec::new();
+        }
+        let can_be = |id: &NodeId| {
+            graph.node(*id).and_then(|node| node.acting_kind()).is_some_and(|kind| kind.has_examination())
+        };
+        graph.upstream(&self.targets).into_iter().filter(|id| wanted(id) && can_be(id)).collect()
     }
 
     /// Relative paths in the graph start at this folder.
@@ -161,6 +192,16 @@ impl Evaluator {
         let begun = Instant::now();
         self.evaluations += 1;
         self.files.begin(request.project.clone().unwrap_or_else(|| Project::within(&request.base)));
+        let examined = request.to_examine(graph);
+        // Their values are needed to the end.
+        let more: Vec<NodeId> = examined.iter().copied().filter(|id| !request.targets.contains(id)).collect();
+        let widened;
+        let request = if more.is_empty() {
+            request
+        } else {
+            widened = Request { targets: [&*request.targets, &more].concat(), ..request.clone() };
+            &widened
+        };
         self.sync(graph, request);
         let place = Place::of_root(graph);
         let disk = Disk { base: &request.base, folder: "", cache: &self.files };
@@ -188,10 +229,10 @@ impl Evaluator {
         drop(runner);
         self.files.drop_bytes();
         let mut evaluation = self.conclude(request, &run);
-        if request.examine {
+        if !examined.is_empty() {
             let key_of = |id: NodeId| self.slots.get(id.index()).and_then(|slot| slot.key.clone());
             let examiner = Examiner { memo: &self.memo, cancel: &request.cancel, events: request.events };
-            examiner.examine(&mut evaluation, key_of);
+            examiner.examine(&mut evaluation, &examined, key_of);
         }
         evaluation.duration = begun.elapsed();
         evaluation

@@ -28,12 +28,15 @@ fn key_of_examination(key: ContentHash) -> ContentHash {
 }
 
 impl Examiner<'_> {
-    /// Adds to the reports of the nodes asked for. A node whose examination fails has failed.
-    pub(crate) fn examine(&self, evaluation: &mut Evaluation, key_of: impl Fn(NodeId) -> Option<Key>) {
-        for (id, kind) in &evaluation.kinds {
-            if kind.examine_fn().is_none() {
-                continue;
-            }
+    /// Adds to the reports of these nodes. A node whose examination fails has failed.
+    pub(crate) fn examine(
+        &self,
+        evaluation: &mut Evaluation,
+        nodes: &[NodeId],
+        key_of: impl Fn(NodeId) -> Option<Key>,
+    ) {
+        for id in nodes {
+            let Some(kind) = evaluation.kinds.get(id) else { continue };
             let (Some(outcome), Some(key)) = (evaluation.outcomes.get_mut(id), key_of(*id)) else { continue };
             let OutcomeState::Done { values: Some(values), report } = &mut outcome.state else { continue };
             let key = key_of_examination(key.hash);

@@ -210,7 +210,7 @@ pub(crate) fn kind() -> NodeKind {
                 | E::TooFewProfiles { .. }
                 | E::EnclosesNothing { .. }),
             ) => Err(error).at(profiles),
-            Err(error @ (E::NoDirection { .. } | E::DirectionCount { .. })) => Err(error).at(neighbours),
+            Err(error @ (E::NoDirection { .. } | E::Border(_))) => Err(error).at(neighbours),
             Err(error @ E::TooFewNodes { .. }) => Err(error).at(nodes),
             Err(E::TooFarOut { name }) if drawn.iter().all(|rail| rail.name() != name) => {
                 Err(E::TooFarOut { name }).at(profiles)

@@ -3,40 +3,17 @@
 use glam::DVec2;
 use maquette_geometry::curve::{ArcLength, Curve};
 use maquette_geometry::file_format::{FileFormat, ReadError, curves_json, svg};
-use maquette_graph::{AtPort, Choices, NodeError, NodeKind, Unit};
+use maquette_graph::{AtPort, NodeError, NodeKind, Unit};
 
+use crate::anchor::Anchor;
 use crate::view_plane::ViewPlane;
 use crate::wire;
 
-/// Which point of a drawing comes to lie on the origin of the plane.
-#[derive(Clone, Copy)]
-enum Anchor {
-    BottomCentre,
-    Centre,
-    Page,
-}
-
-impl Choices for Anchor {
-    const OPTIONS: &'static [(Self, &'static str, &'static str)] = &[
-        (Self::BottomCentre, "bottom-centre", "the middle of the drawing's lower edge"),
-        (Self::Centre, "centre", "the middle of the drawing"),
-        (Self::Page, "page", "the page's upper left corner; the drawing hangs below it"),
-    ];
-}
-
-impl Anchor {
-    /// The anchor in SVG units, y down.
-    fn of(self, paths: &[svg::Path2d]) -> DVec2 {
-        let bounds = paths.iter().flat_map(|p| &p.points).fold(None, |bounds, p| {
-            let (low, high) = bounds.unwrap_or((*p, *p));
-            Some((p.min(low), p.max(high)))
-        });
-        match (self, bounds) {
-            (Self::Page, _) | (_, None) => DVec2::ZERO,
-            (Self::Centre, Some((low, high))) => (low + high) / 2.0,
-            (Self::BottomCentre, Some((low, high))) => DVec2::new((low.x + high.x) / 2.0, high.y),
-        }
-    }
+/// The lower left and the upper right corner of paths, in SVG units, y down; none where there are no points.
+fn extent(paths: &[svg::Path2d]) -> Option<[DVec2; 2]> {
+    let points = paths.iter().flat_map(|path| &path.points).map(|p| [*p, *p]);
+    let bounds = points.reduce(|[low, high], [p, _]| [p.min(low), p.max(high)]);
+    bounds.map(|[low, high]| [DVec2::new(low.x, high.y), DVec2::new(high.x, low.y)])
 }
 
 /// Metres of a pixel: SVG has 96 of them an inch.
@@ -83,7 +60,7 @@ pub(crate) fn kind() -> NodeKind {
             FileFormat::Svg => {
                 let (plane, offset, scale) = (ports.choice(plane), ports.value(offset), ports.value(scale));
                 let paths = svg::read(&bytes, ports.value(tolerance) / scale).at(file)?;
-                let anchor = ports.choice(anchor).of(&paths);
+                let anchor = ports.choice(anchor).of(DVec2::ZERO, extent(&paths));
                 let placed = paths.iter().enumerate().map(|(index, path)| {
                     let name = if path.name.is_empty() { format!("path {index}") } else { path.name.clone() };
                     // SVG's y runs down.

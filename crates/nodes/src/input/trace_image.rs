@@ -6,6 +6,7 @@ use maquette_geometry::file_format::picture::{self, Channel, PictureError};
 use maquette_geometry::outline::{Calming, Keep, Outline, OutlineError, Tracing, calmed, trace_while};
 use maquette_graph::{AtPort, Choices, NodeError, NodeKind, Unit};
 
+use crate::anchor::Anchor;
 use crate::view_plane::ViewPlane;
 use crate::wire;
 
@@ -30,36 +31,13 @@ impl Choices for KeepChoice {
     ];
 }
 
-/// Which point of a picture comes to lie on the origin of the plane.
-#[derive(Clone, Copy)]
-enum Anchor {
-    BottomCentre,
-    Centre,
-    Page,
-}
-
-impl Choices for Anchor {
-    const OPTIONS: &'static [(Self, &'static str, &'static str)] = &[
-        (Self::BottomCentre, "bottom-centre", "the middle of the lower edge of what is traced"),
-        (Self::Centre, "centre", "the middle of what is traced"),
-        (Self::Page, "page", "the picture's upper left corner; the outlines hang below it"),
-    ];
-}
-
-impl Anchor {
-    /// The anchor in pixels, y up, in a picture of this height.
-    fn of(self, outlines: &[Curve], height: f64) -> DVec2 {
-        let bounds = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        let (low, high) = outlines.iter().fold(bounds, |(low, high), outline| {
-            let (l, h) = outline.bounds();
-            (low.min(l.truncate()), high.max(h.truncate()))
-        });
-        match self {
-            Self::Page => DVec2::new(0.0, height),
-            Self::Centre => (low + high) / 2.0,
-            Self::BottomCentre => DVec2::new((low.x + high.x) / 2.0, low.y),
-        }
-    }
+/// The lower left and the upper right corner of outlines, in pixels, y up.
+fn extent(outlines: &[Curve]) -> Option<[DVec2; 2]> {
+    let bounds = outlines.iter().map(|outline| {
+        let (low, high) = outline.bounds();
+        [low.truncate(), high.truncate()]
+    });
+    bounds.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)])
 }
 
 pub(crate) fn kind() -> NodeKind {
@@ -166,7 +144,7 @@ pub(crate) fn kind() -> NodeKind {
         }
         let plane = ports.choice(plane);
         let offset = ports.value(offset);
-        let anchor = ports.choice(anchor).of(&calm, mask.height() as f64);
+        let anchor = ports.choice(anchor).of(DVec2::new(0.0, mask.height() as f64), extent(&calm));
         let place = |outline: &Curve| outline.map(|p| plane.place((p.truncate() - anchor) * scale, offset));
         let placed: Vec<Curve> = calm.iter().map(place).collect::<Result<_, _>>().at(pixel)?;
         let row = |((flat, placed), traced): ((&Curve, &Curve), &Outline)| {

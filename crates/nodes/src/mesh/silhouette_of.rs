@@ -5,19 +5,20 @@ use maquette_geometry::mesh::{MeshSilhouetteError, silhouette_of};
 use maquette_geometry::view::View;
 use maquette_graph::{AtPort, Choices, NodeError, NodeKind, Unit};
 
+use crate::view_plane::ViewPlane;
 use crate::wire;
 
 #[derive(Clone, Copy)]
 enum ViewChoice {
-    Plane(View),
+    Plane(ViewPlane),
     Direction,
 }
 
 impl Choices for ViewChoice {
     const OPTIONS: &'static [(Self, &'static str, &'static str)] = &[
-        (Self::Plane(View::FRONT), "front", "XY plane, seen from the front"),
-        (Self::Plane(View::SIDE), "side", "ZY plane, seen from the side"),
-        (Self::Plane(View::TOP), "top", "XZ plane, seen from above"),
+        (Self::Plane(ViewPlane::Front), "front", "XY plane, seen from the front"),
+        (Self::Plane(ViewPlane::Side), "side", "ZY plane, seen from the side"),
+        (Self::Plane(ViewPlane::Top), "top", "XZ plane, seen from above"),
         (Self::Direction, "direction", "across the direction given"),
     ];
 }
@@ -43,7 +44,7 @@ pub(crate) fn kind() -> NodeKind {
     let found = node.figure("holes", Unit::None, "How many holes are seen.");
     node.evaluate(move |ports| {
         let seen = match ports.choice(view) {
-            ViewChoice::Plane(view) => view,
+            ViewChoice::Plane(plane) => plane.view(),
             ViewChoice::Direction => View::along(DVec3::from_array(ports.read(direction).0))
                 .ok_or("the direction has no length: give one other than zero")
                 .at(direction)?,

@@ -5,6 +5,7 @@ use glam::{DVec2, DVec3};
 use super::chain::Loop;
 use super::plane::Frame;
 use super::section::Others;
+use crate::polygon::signed_area;
 
 /// What a plane has for a bone that passes through its origin.
 #[derive(Debug)]
@@ -89,12 +90,6 @@ fn winding(flat: &[DVec2]) -> i32 {
         .sum()
 }
 
-/// Area of a polygon, positive where it runs counter-clockwise.
-pub(super) fn signed_area(flat: &[DVec2]) -> f64 {
-    let Some(&origin) = flat.first() else { return 0.0 };
-    flat.windows(2).map(|side| (side[0] - origin).perp_dot(side[1] - origin)).sum::<f64>() / 2.0
-}
-
 fn distance_to_origin(a: DVec2, b: DVec2) -> f64 {
     let along = b - a;
     let share = (-a.dot(along) / along.length_squared()).clamp(0.0, 1.0);
@@ -159,10 +154,10 @@ mod tests {
     #[test]
     fn windings_are_signed_and_counted() {
         let square = [DVec2::new(1.0, 1.0), DVec2::new(-1.0, 1.0), DVec2::new(-1.0, -1.0), DVec2::new(1.0, -1.0)];
-        assert_eq!((winding(&square), signed_area(&square)), (1, 4.0));
+        assert_eq!(winding(&square), 1);
         let mut back = square;
         back.reverse();
-        assert_eq!((winding(&back), signed_area(&back)), (-1, -4.0));
+        assert_eq!(winding(&back), -1);
         assert_eq!(winding(&[square, square].concat()), 2);
         assert_eq!(winding(&square.map(|p| p + DVec2::new(0.0, 1.5))), 0);
     }

@@ -2,11 +2,11 @@
 
 use glam::{DVec2, DVec3};
 
-use super::around::signed_area;
 use super::chain::Loop;
 use super::plane::{Frame, Plane};
 use super::warning::SliceWarning;
 use crate::curve::{Curve, CurveError, ResampleError, Resampling, resample};
+use crate::polygon::signed_area;
 
 /// Which surface a ray is to find.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

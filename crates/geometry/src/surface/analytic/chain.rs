@@ -42,7 +42,7 @@ pub fn chain(
         all.extend(sections.iter().skip(usize::from(part > 0)).cloned());
     }
     joints.push(all.len().saturating_sub(1));
-    let whole = AnalyticSurface::through(&all, &SurfaceOptions { blend: Blend::Spline, ..options.clone() })
+    let whole = AnalyticSurface::unwarned(&all, &SurfaceOptions { blend: Blend::Spline, ..options.clone() })
         .map_err(|error| in_its_part(&joints, error))?;
     let knots = whole.section_parameters();
     let mut surfaces = Vec::with_capacity(parts.len());

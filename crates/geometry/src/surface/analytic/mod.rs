@@ -16,7 +16,7 @@ mod surface;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use angles::{Angles, Piece, combined};
+pub(crate) use angles::{Angles, Piece};
 pub(crate) use ends::{EndCurves, largest_distance, size};
 pub(crate) use surface::mean;
 

@@ -72,7 +72,23 @@ impl AnalyticSurface {
         ends: &[EndCurves; 2],
         options: &SurfaceOptions,
     ) -> Result<Self, SurfaceError> {
-        let sections = &checked(sections)?;
+        let sections = checked(sections)?;
+        let plan = Self::planned(&sections, ends, options)?;
+        Self::solved(Plan { warnings: crossing::find(&sections), ..plan })
+    }
+
+    /// As [`Self::through`], without warnings: looking for them costs more than the surface.
+    pub(crate) fn unwarned(sections: &[EllipticSection], options: &SurfaceOptions) -> Result<Self, SurfaceError> {
+        let ends = [EndCurves::of(&options.start, Side::Start)?, EndCurves::of(&options.end, Side::End)?];
+        Self::solved(Self::planned(&checked(sections)?, &ends, options)?)
+    }
+
+    /// What a surface through checked sections is solved from, without warnings.
+    fn planned(
+        sections: &[EllipticSection],
+        ends: &[EndCurves; 2],
+        options: &SurfaceOptions,
+    ) -> Result<Plan, SurfaceError> {
         let count = sections.len();
         let closed = sections[0].is_closed();
         let mut curves: Vec<&[EllipticSegment]> = sections.iter().map(EllipticSection::segments).collect();
@@ -126,8 +142,7 @@ impl AnalyticSurface {
         if polynomial && count > MOST_OF_POLYNOMIAL {
             return Err(SurfaceError::TooManyForPolynomial { sections: count });
         }
-        let warnings = crossing::find(sections);
-        Self::solved(Plan { angles, sections: rows, knots, ends: given, polynomial, warnings })
+        Ok(Plan { angles, sections: rows, knots, ends: given, polynomial, warnings: Vec::new() })
     }
 
     /// The surface of a plan.
