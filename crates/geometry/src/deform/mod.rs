@@ -21,6 +21,6 @@ pub use cross_section::{
 };
 pub use cross_section_error::CrossSectionError;
 pub use silhouette::{
-    Contact, Silhouette, SilhouetteDeformed, SilhouetteDeformer, SilhouetteError, SilhouetteOptions, StrokeMatching,
-    StrokesError, ViewFit, deform_to_silhouette,
+    Contact, SectionSpacing, Silhouette, SilhouetteDeformed, SilhouetteDeformer, SilhouetteError, SilhouetteOptions,
+    StrokeMatching, StrokesError, ViewFit, deform_to_silhouette,
 };
