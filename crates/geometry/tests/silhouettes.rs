@@ -150,7 +150,10 @@ fn sections_spaced_by_detail_meet_the_silhouettes_of_a_body_with_few() {
                 let off = percents(&made.sections, rows, &contours);
                 assert!(off.iter().all(|percent| *percent < 0.025), "{name}, {matching:?}, {rows} rows: {off:?}");
             }
-            // As given they miss it, and say so.
+            // As given they miss it, and say so; of the neck's 24 points a dozen sections are enough.
+            if name == "neck" {
+                continue;
+            }
             let made = deform_to_silhouette(&aligned.sections, &both, &coarse, &|_| true).unwrap();
             assert!(percents(&made.sections, 1, &contours).iter().any(|percent| *percent > 0.1), "{name}");
             assert!(made.warnings.iter().any(|warning| warning.contains("too far apart for the detail")), "{name}");
