@@ -123,6 +123,7 @@ fn every_saved_graph_is_tested_here() {
             "human",
             "leg",
             "leg-deformed",
+            "leg-free-form",
             "legs",
             "neck",
             "open-strokes",
@@ -150,6 +151,7 @@ fn no_saved_graph_has_a_node_without_use() {
         "hip",
         "open-strokes",
         "leg-deformed",
+        "leg-free-form",
         "sea-star",
         "torso",
     ] {

@@ -103,10 +103,12 @@ fn nodes_on_curves() {
     stops(&catalogue, "sort", 8 * 3, |h| h.give("curves", wire::Curves(tube.clone())));
     // One question for each block of 16 segments.
     stops(&catalogue, "sort", 20_000 / 16, |h| h.give("curves", arches(20_000)));
-    let (one, other) = (rails(2, 4_000), rails(2, 4_100));
-    stops(&catalogue, "compare-curves", 4, |h| h.give("curves", one.clone()).give("reference", other.clone()));
-    let page = page(400);
-    stops(&catalogue, "trace-image", 20, |h| h.file("file", "a.png", page.clone()));
+    // One question for each place on both curves that is measured.
+    let [one, other] = [0, 1].map(|k| wire::Curve(many.0[k].clone()));
+    stops(&catalogue, "compare-curves", 100, |h| h.give("first", one.clone()).give("second", other.clone()));
+    // Before each of its steps; tracing itself is one.
+    let sole = include_bytes!("../../../graphs/data/pictures/sole.png");
+    stops(&catalogue, "trace-image", 8, |h| h.file("file", "sole.png", sole.to_vec()));
     let json = curves_json::write(&many.0);
     stops(&catalogue, "import-curves", json.len() >> 17, |h| h.file("file", "a.json", json.clone()));
 }

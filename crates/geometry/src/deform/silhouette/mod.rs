@@ -11,6 +11,8 @@ mod deformed;
 mod error;
 mod outline;
 pub(crate) mod pair;
+#[cfg(test)]
+mod properties;
 mod ring;
 mod spacing;
 #[cfg(test)]
