@@ -17,6 +17,7 @@ draw legs legs 560x640 --curves
 draw human human 480x720
 draw human human-side 480x720 --view side
 draw leg-deformed leg-deformed 320x560
+draw leg-free-form leg-free-form 320x560 --curves
 draw sea-star sea-star 480x440
 draw blend blend 320x560 --wireframe
 draw shoulder shoulder 560x480

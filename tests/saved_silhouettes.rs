@@ -81,6 +81,50 @@ fn the_leg_is_deformed_in_both_views_at_once() {
 }
 
 #[test]
+fn the_torso_has_sections_where_its_strokes_have_detail() {
+    let saved = Saved::load("torso");
+    let evaluation = saved.evaluate(&mut Evaluator::default(), &["deformed", "front strokes"]);
+    let count = figure(&saved, &evaluation, "deformed", "sections");
+    assert!((40.0..90.0).contains(&count), "{count} sections from 12");
+    let strokes = &evaluation.value::<wire::Curves>(saved.node("front strokes"), "curves").unwrap().0;
+    let (low, high) = strokes
+        .iter()
+        .map(maquette_geometry::curve::Curve::bounds)
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), (low, high)| (l.min(low), h.max(high)));
+    let gap = figure(&saved, &evaluation, "deformed", "largest-gap");
+    // 0.02 % of the larger sketch, which the front's is.
+    assert!(gap > 0.0 && gap <= 0.0002 * (high - low).length() * (1.0 + 1e-9), "{gap}");
+}
+
+#[test]
+fn the_leg_is_deformed_again_to_free_form_curves() {
+    let saved = Saved::load("leg-free-form");
+    let names = ["leg", "outlines", "stroke lines", "muscle lines", "fit", "deformed", "shaped", "muscles"];
+    let evaluation = saved.evaluate(&mut Evaluator::default(), &names);
+    sound(&saved, &evaluation, "fit");
+    let stack = |node: &str| &evaluation.value::<wire::Sections>(saved.node(node), "sections").unwrap().0;
+    let (before, after) = (stack("deformed"), stack("shaped"));
+    let mut passed = 0;
+    let curves = &evaluation.value::<wire::Curves>(saved.node("muscles"), "curves").unwrap().0;
+    for curve in curves {
+        // Every point of the curve is on the surface, to what a mesh of it leaves; it was well off it.
+        let mesh = &evaluation.value::<wire::Mesh>(saved.node("fit"), "mesh").unwrap().0;
+        let surface = maquette_geometry::mesh::distance::MeshDistance::new(mesh).unwrap();
+        let off = curve.points().iter().map(|p| surface.nearest(*p).distance).fold(0.0, f64::max);
+        assert!(off < 1e-3, "{}: {off}", curve.name());
+        passed += 1;
+    }
+    assert_eq!(passed, 2);
+    let bulge = figure(&saved, &evaluation, "shaped", "largest-move");
+    assert!((0.01..0.03).contains(&bulge), "{bulge}");
+    // The rails, which are the silhouettes, are where they were, except where the curves come close to them.
+    let still = |rail: usize| (0..before.len()).all(|k| before.section(k)[rail] == after.section(k)[rail]);
+    assert_eq!(after.rails(), before.rails());
+    assert!(after.rails().iter().filter(|rail| still(**rail)).count() >= 2);
+    assert!(figure(&saved, &evaluation, "fit", "largest-percent") < 0.5);
+}
+
+#[test]
 fn the_sea_star_is_an_ellipsoid_in_one_outline() {
     let saved = Saved::load("sea-star");
     let evaluation =

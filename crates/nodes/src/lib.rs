@@ -49,6 +49,7 @@ fn kinds() -> Vec<NodeKind> {
         deform::align_primitive::kind(),
         deform::beam::kind(),
         deform::deform_by_cross_section::kind(),
+        deform::deform_to_curves::kind(),
         deform::deform_to_silhouette::kind(),
         generate::blend::kind(),
         generate::detail_generator::kind(),

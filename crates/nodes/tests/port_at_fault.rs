@@ -362,6 +362,12 @@ fn silhouettes() {
     let far = strokes("far", 0.5, 0.0).0.iter().map(|c| c.map(|p| p + DVec3::X * 9.0).unwrap()).collect();
     deform(sections(11, true), wire::Curves(far)).blames("front", "7.5000 m beside the sections");
     run("deform-to-silhouette", "top", sections(11, true), strokes("two", 0.5, 0.0)).blames("top", "one closed stroke");
+    let curves = |drawn: Vec<Curve>| run("deform-to-curves", "curves", sections(11, true), wire::Curves(drawn));
+    curves(vec![]).blames("curves", "no curves to follow");
+    let far = strokes("far", 0.5, 0.0).0[0].map(|p| p + DVec3::X * 9.0).unwrap();
+    curves(vec![far]).blames("curves", "draw it on the surface or close to it");
+    let open = run("deform-to-curves", "curves", sections(11, false), strokes("", 0.5, 0.0));
+    open.blames("sections", "the sections are open");
     let report = deform(sections(11, true), strokes("", 0.5, 0.0)).run().unwrap();
     assert!(report.figure("largest-move").unwrap().value > 0.49 && report.warnings.is_empty());
 }

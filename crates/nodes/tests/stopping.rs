@@ -103,6 +103,12 @@ fn nodes_on_curves() {
     stops(&catalogue, "sort", 8 * 3, |h| h.give("curves", wire::Curves(tube.clone())));
     // One question for each block of 16 segments.
     stops(&catalogue, "sort", 20_000 / 16, |h| h.give("curves", arches(20_000)));
+    // One question for each place on both curves that is measured.
+    let [one, other] = [0, 1].map(|k| wire::Curve(many.0[k].clone()));
+    stops(&catalogue, "compare-curves", 100, |h| h.give("first", one.clone()).give("second", other.clone()));
+    // Before each of its steps; tracing itself is one.
+    let sole = include_bytes!("../../../graphs/data/pictures/sole.png");
+    stops(&catalogue, "trace-image", 8, |h| h.file("file", "sole.png", sole.to_vec()));
     let json = curves_json::write(&many.0);
     stops(&catalogue, "import-curves", json.len() >> 17, |h| h.file("file", "a.json", json.clone()));
 }
@@ -134,6 +140,10 @@ fn nodes_on_shapes() {
             h.give("sections", stack.clone()).give("front", strokes(0)).give("side", strokes(1))
         });
     }
+    stops(&catalogue, "deform-to-silhouette", 100, |h| {
+        h.give("sections", stack.clone()).give("front", strokes(0)).set("spacing", Literal::Choice("by-detail".into()))
+    });
+    stops(&catalogue, "deform-to-curves", 200, |h| h.give("sections", stack.clone()).give("curves", strokes(0)));
     let rings = wire::Curves((0..100).map(|k| ring("", 100, 1.0, 0.02 * (k * 37 % 100) as f64)).collect());
     stops(&catalogue, "order-sections", 300, |h| h.give("curves", rings.clone()));
     stops(&catalogue, "primitive-shape", 2, |h| h.set("sections", Literal::Integer(100)));

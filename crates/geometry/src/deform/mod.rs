@@ -9,6 +9,9 @@ mod cross_section;
 mod cross_section_error;
 #[cfg(test)]
 mod cross_section_tests;
+mod free_form;
+#[cfg(test)]
+mod free_form_tests;
 pub mod laplacian;
 mod silhouette;
 
@@ -20,7 +23,8 @@ pub use cross_section::{
     deform_by_cross_sections,
 };
 pub use cross_section_error::CrossSectionError;
+pub use free_form::{CurvesError, FollowedCurve, FreeFormDeformed, FreeFormOptions, deform_to_curves};
 pub use silhouette::{
-    Contact, Silhouette, SilhouetteDeformed, SilhouetteDeformer, SilhouetteError, SilhouetteOptions, StrokeMatching,
-    StrokesError, ViewFit, deform_to_silhouette,
+    Contact, SectionSpacing, Silhouette, SilhouetteDeformed, SilhouetteDeformer, SilhouetteError, SilhouetteOptions,
+    StrokeMatching, StrokesError, ViewFit, deform_to_silhouette,
 };

@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
+use image::{DynamicImage, GrayImage, ImageDecoder, ImageError, ImageFormat, ImageReader};
 
 use crate::outline::Mask;
 
@@ -63,7 +63,8 @@ pub enum PictureError {
 ///
 /// Luminance is that of the stored numbers by the weights of Rec. 709 (gamma is left as it is: edges that paint
 /// programs soften lie where these numbers are half). 16-bit pictures are rounded to 8 bits. The size is known before
-/// any pixel is decoded, and at most [`MAX_PIXELS`] are.
+/// any pixel is decoded, and at most [`MAX_PIXELS`] are. A picture is turned and mirrored as its EXIF data say it was
+/// held, as every viewer shows it.
 ///
 /// # Errors
 /// [`PictureError`] where the bytes are empty, neither PNG nor JPEG, damaged or cut off, too large, or without the alpha
@@ -87,6 +88,8 @@ pub fn read(bytes: &[u8], channel: Channel) -> Result<Mask, PictureError> {
     let mut limits = image::Limits::no_limits();
     limits.max_alloc = Some(MAX_BYTES);
     decoder.set_limits(limits).map_err(malformed)?;
+    // Cameras store pictures as the sensor lies and say how they were held.
+    let held = decoder.orientation().map_err(malformed)?;
     let picture = DynamicImage::from_decoder(decoder).map_err(malformed)?;
     let values = match channel {
         Channel::Alpha if !picture.color().has_alpha() => return Err(PictureError::NoAlpha),
@@ -94,9 +97,12 @@ pub fn read(bytes: &[u8], channel: Channel) -> Result<Mask, PictureError> {
         Channel::Dark => rows(&picture, |luma, alpha| covered(255 - luma, alpha)),
         Channel::Light => rows(&picture, covered),
     };
-    let (width, height) = (width as usize, height as usize);
-    Mask::new(width, height, values)
-        .map_err(|error| PictureError::Malformed { format: name, problem: error.to_string() })
+    let unusable = |problem: String| PictureError::Malformed { format: name, problem };
+    let stored = GrayImage::from_raw(width, height, values).ok_or_else(|| unusable("too few pixels".to_owned()))?;
+    let mut upright = DynamicImage::ImageLuma8(stored);
+    upright.apply_orientation(held);
+    let (width, height) = (upright.width() as usize, upright.height() as usize);
+    Mask::new(width, height, upright.into_bytes()).map_err(|error| unusable(error.to_string()))
 }
 
 /// A value of 0 to 255 over nothing.
@@ -146,7 +152,7 @@ fn plain(error: &ImageError) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use image::{GrayImage, ImageBuffer, Luma, Rgb, RgbImage, Rgba, RgbaImage};
+    use image::{ImageBuffer, Luma, Rgb, RgbImage, Rgba, RgbaImage};
 
     fn encoded(picture: impl Into<DynamicImage>, format: ImageFormat) -> Vec<u8> {
         let mut bytes = Cursor::new(Vec::new());
@@ -184,6 +190,51 @@ mod tests {
             let off = values(&jpeg).iter().zip(&wanted).map(|(a, b)| a.abs_diff(*b)).max();
             assert!(off < Some(12), "{off:?}");
         }
+    }
+
+    /// A JPEG with EXIF data that say how it was held.
+    fn held(jpeg: &[u8], orientation: u8) -> Vec<u8> {
+        let mut exif = b"Exif\0\0II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0".to_vec();
+        exif.extend([orientation, 0, 0, 0, 0, 0, 0, 0]);
+        let length = u16::try_from(exif.len() + 2).unwrap().to_be_bytes();
+        [&jpeg[..2], &[0xff, 0xe1], &length, &exif, &jpeg[2..]].concat()
+    }
+
+    #[test]
+    fn a_photograph_is_read_as_it_was_held() {
+        // Brighter to the right and, more so, downwards: no turned or mirrored picture is like another.
+        let (width, height) = (24_u32, 16_u32);
+        let upright = |x: u32, y: u32| u8::try_from(2 * x + 9 * y).unwrap();
+        // What the standard says of each number: the side seen where the first row and the first column are stored.
+        let sides = [
+            "top left",
+            "top right",
+            "bottom right",
+            "bottom left",
+            "left top",
+            "right top",
+            "right bottom",
+            "left bottom",
+        ];
+        for (orientation, sides) in (1_u8..).zip(sides) {
+            let (row, column) = sides.split_once(' ').unwrap();
+            let lies = matches!(row, "left" | "right");
+            let (across, down) = if lies { (height, width) } else { (width, height) };
+            let stored = GrayImage::from_fn(across, down, |i, j| {
+                let (x_side, y_side, x, y) = if lies { (row, column, j, i) } else { (column, row, i, j) };
+                let x = if x_side == "left" { x } else { width - 1 - x };
+                let y = if y_side == "top" { y } else { height - 1 - y };
+                Luma([upright(x, y)])
+            });
+            let read = read(&held(&encoded(stored, ImageFormat::Jpeg), orientation), Channel::Light).unwrap();
+            assert_eq!((read.width(), read.height()), (width as usize, height as usize), "{orientation}");
+            let wanted = (0..height).flat_map(|y| (0..width).map(move |x| upright(x, y)));
+            let off = read.values().iter().zip(wanted).map(|(a, b)| a.abs_diff(b)).max();
+            assert!(off < Some(8), "orientation {orientation}: {off:?}");
+        }
+        // What is no orientation changes nothing.
+        let plain = encoded(GrayImage::from_fn(24, 16, |x, y| Luma([upright(x, y)])), ImageFormat::Jpeg);
+        assert_eq!(read(&held(&plain, 9), Channel::Light), read(&plain, Channel::Light));
     }
 
     #[test]

@@ -6,6 +6,7 @@ use maquette_graph::Choices;
 pub(crate) mod align_primitive;
 pub(crate) mod beam;
 pub(crate) mod deform_by_cross_section;
+pub(crate) mod deform_to_curves;
 pub(crate) mod deform_to_silhouette;
 
 /// How points of two strokes find each other.

@@ -43,13 +43,17 @@ fn extent(outlines: &[Curve]) -> Option<[DVec2; 2]> {
 pub(crate) fn kind() -> NodeKind {
     let mut node = NodeKind::declare(
         "trace-image",
-        1,
+        2,
         "input",
         "Outlines of a shape in a picture (PNG, JPEG), as closed curves on a view plane: counter-clockwise around the shape \
          as the picture shows it, clockwise around its holes.",
     );
     node.reference("thesis 5.1");
-    let file = node.file("file", &["png", "jpg", "jpeg"], "The picture, .png or .jpg; up to 8 million pixels.");
+    let file = node.file(
+        "file",
+        &["png", "jpg", "jpeg"],
+        "The picture, .png or .jpg, as it was held; up to 8 million pixels.",
+    );
     let channel = node.choice::<ChannelChoice>("channel", "What of the picture is the shape.");
     let threshold = node.number(
         "threshold",

@@ -1,5 +1,7 @@
 //! A first line through a group of strokes: the longest one, prolonged by those that go on beyond its ends.
 
+use std::ops::Range;
+
 use glam::DVec3;
 
 use super::samples::{PER_DISTANCE, Samples};
@@ -34,16 +36,17 @@ pub(super) fn spine(
     if first.closed {
         return Ok(Some(line));
     }
-    // Each turn prolongs the line by the stroke that leads farthest beyond an end, and so uses up that part of it.
+    // Each turn prolongs the line by the part of a stroke that leads farthest beyond an end, and so uses it up.
     for _ in 0..2 * strokes.len() {
         let mut best: Option<(f64, bool, Vec<DVec3>)> = None;
         for stroke in strokes.iter().filter(|stroke| !stroke.closed) {
-            go_on(0.0)?;
-            for at_end in [true, false] {
-                let Some(tail) = beyond(&line, stroke, at_end, distance, alike) else { continue };
-                let length = stroke.step * tail.len() as f64;
-                if best.as_ref().is_none_or(|best| length > best.0) {
-                    best = Some((length, at_end, tail));
+            for run in off_the_line(&line, stroke, distance, alike, go_on)? {
+                for at_end in [true, false] {
+                    let Some(tail) = beyond(&line, stroke, &run, at_end, distance, alike) else { continue };
+                    let length = stroke.step * tail.len() as f64;
+                    if best.as_ref().is_none_or(|best| length > best.0) {
+                        best = Some((length, at_end, tail));
+                    }
                 }
             }
         }
@@ -62,31 +65,58 @@ pub(super) fn spine(
     Ok(Some(ring(&line, distance, alike).unwrap_or(line)))
 }
 
-/// The part of a stroke that leads beyond an end of the line, from there on; none where that is no longer than the
-/// distance, or begins too far away.
-fn beyond(line: &Line, stroke: &Samples, at_end: bool, distance: f64, alike: f64) -> Option<Vec<DVec3>> {
+/// The parts of a stroke that the line does not stand for: nowhere beside it, or beyond its ends. What is on the far
+/// side of a ring runs the same way, but far off.
+fn off_the_line(
+    line: &Line,
+    stroke: &Samples,
+    distance: f64,
+    alike: f64,
+    go_on: &dyn Fn(f64) -> Result<(), CleanError>,
+) -> Result<Vec<Range<usize>>, CleanError> {
+    let length = line.length();
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for (k, (point, direction)) in stroke.points.iter().zip(&stroke.directions).enumerate() {
+        if k % 64 == 0 {
+            go_on(0.0)?;
+        }
+        let foot = line.foot(*point, *direction, alike, distance);
+        if (0.0..=length).contains(&foot.at) && foot.away <= GAP * distance {
+            continue;
+        }
+        match runs.last_mut() {
+            Some(run) if run.end == k => run.end += 1,
+            _ => runs.push(k..k + 1),
+        }
+    }
+    Ok(runs)
+}
+
+/// A part of a stroke that leads beyond an end of the line, from there on; none where it begins too far away, or leads no
+/// farther than the distance without coming back to the line.
+fn beyond(
+    line: &Line,
+    stroke: &Samples,
+    run: &Range<usize>,
+    at_end: bool,
+    distance: f64,
+    alike: f64,
+) -> Option<Vec<DVec3>> {
     let length = line.length();
     let (end, outward) = match at_end {
         true => (line.point(length), line.direction(length, distance)),
         false => (line.point(0.0), -line.direction(0.0, distance)),
     };
-    let leads_away = |k: usize| {
-        let foot = line.foot(stroke.points[k], stroke.directions[k], alike, distance);
-        if at_end { foot.at > length } else { foot.at < 0.0 }
-    };
-    let order = |k: usize, forth: bool| if forth { stroke.last() - k } else { k };
-    // From either tip of the stroke back to the line.
+    let far = stroke.step * run.len() as f64 > distance * (1.0 + 1.0 / PER_DISTANCE);
     [true, false].into_iter().find_map(|forth| {
-        let count = (0..=stroke.last()).take_while(|k| leads_away(order(*k, forth))).count();
-        if count == 0 {
-            return None;
-        }
-        let begin = order(count - 1, forth);
-        let heading = stroke.directions[begin] * if forth { 1.0 } else { -1.0 };
-        let tail: Vec<DVec3> = (0..count).rev().map(|k| stroke.points[order(k, forth)]).collect();
-        let far = stroke.step * count as f64 > distance * (1.0 + 1.0 / PER_DISTANCE);
+        let (begin, sense) = if forth { (run.start, 1.0) } else { (run.end - 1, -1.0) };
+        let comes_back = if forth { run.end <= stroke.last() } else { run.start > 0 };
         let near = stroke.points[begin].distance(end) <= GAP * distance;
-        (far && near && heading.dot(outward) >= alike).then_some(tail)
+        let heading = stroke.directions[begin] * sense;
+        ((far || comes_back) && near && heading.dot(outward) >= alike).then(|| {
+            let part = stroke.points[run.clone()].iter().copied();
+            if forth { part.collect() } else { part.rev().collect() }
+        })
     })
 }
 

@@ -107,15 +107,58 @@ fn rings_stay_closed_and_a_stroke_that_comes_around_becomes_one() {
     let lines = clean(&[ring(0.0), ring(0.3), ring(0.7).reversed()], &CLEANING).unwrap();
     assert!(lines.len() == 1 && lines[0].curve.is_closed());
     assert!(off(&lines[0].curve, head, true) < 0.004, "{}", off(&lines[0].curve, head, true));
-    // Three open arcs are one line, which need not come out closed; one stroke that runs past its beginning does.
-    let arcs = [[0.0, 0.4], [0.35, 0.7], [0.65, 1.05]].map(|range| stroke("arc", range, head, sway(0.003, range[0])));
-    let lines = clean(&arcs, &CLEANING).unwrap();
-    assert_eq!(lines.len(), 1);
+    // One stroke that runs past its beginning.
     let past = stroke("past", [0.0, 1.12], head, |t| head(t) * 0.02 * t);
     let lines = clean(&[past], &CLEANING).unwrap();
     assert!(lines.len() == 1 && lines[0].curve.is_closed());
     let around = ArcLength::of(&stroke("", [0.0, 1.0], head, still)).length();
     assert!((ArcLength::of(&lines[0].curve).length() - around).abs() < 0.06);
+}
+
+/// Length of a closed line of `head`'s kind.
+fn around(line: impl Fn(f64) -> DVec3) -> f64 {
+    ArcLength::of(&stroke("", [0.0, 1.0], line, still)).length()
+}
+
+#[test]
+fn arcs_that_come_around_together_close() {
+    // Overlapping, with gaps that are bridged, and of very different lengths.
+    let cases: [&[[f64; 2]]; 6] = [
+        &[[0.0, 0.4], [0.35, 0.7], [0.65, 1.05]],
+        &[[0.0, 0.55], [0.5, 1.05]],
+        &[[0.0, 0.24], [0.25, 0.49], [0.5, 0.74], [0.75, 0.99]],
+        &[[0.0, 0.8], [0.78, 1.02]],
+        &[[0.0, 0.3], [0.2, 0.6], [0.4, 0.8], [0.6, 1.0], [0.8, 1.2]],
+        &[[0.0, 0.9], [0.87, 0.95], [0.93, 1.01]],
+    ];
+    for arcs in cases {
+        for turned in 0..1 << arcs.len() {
+            let piece = |(k, range): (usize, &[f64; 2])| {
+                let drawn = stroke("arc", *range, head, sway(0.003, range[0]));
+                if turned & (1 << k) == 0 { drawn } else { drawn.reversed() }
+            };
+            let mut strokes: Vec<Curve> = arcs.iter().enumerate().map(piece).collect();
+            strokes.rotate_left(turned % arcs.len());
+            let lines = clean(&strokes, &CLEANING).unwrap();
+            assert_eq!(lines.len(), 1, "{arcs:?}");
+            let curve = &lines[0].curve;
+            assert!(curve.is_closed(), "{arcs:?}, turned {turned}");
+            let (length, off) = (ArcLength::of(curve).length(), off(curve, head, true));
+            assert!((length - around(head)).abs() < 0.06 && off < 0.008, "{arcs:?}: {length}, {off}");
+        }
+    }
+}
+
+#[test]
+fn what_does_not_come_around_stays_open() {
+    // A gap of twice the distance, and a spiral whose end passes its beginning by far.
+    let wide = [[0.0, 0.5], [0.45, 0.93]].map(|range| stroke("arc", range, head, sway(0.003, range[0])));
+    let spiral = |t: f64| head(t) * (1.0 + 0.6 * t);
+    let spiral = [[0.0, 0.5], [0.45, 1.1]].map(|range| stroke("arc", range, spiral, still));
+    for arcs in [wide, spiral] {
+        let lines = clean(&arcs, &CLEANING).unwrap();
+        assert!(lines.len() == 1 && !lines[0].curve.is_closed(), "{lines:?}");
+    }
 }
 
 #[test]
@@ -166,6 +209,40 @@ proptest! {
         let from_mean = off(&lines[0].curve, |t| arm(t) + mean, false);
         prop_assert!(from_mean < 0.2 * size + 3e-4, "{from_mean} {size}");
         prop_assert!(off(&lines[0].curve, arm, false) < 1.3 * size / 5.0_f64.sqrt() + mean.length());
+    }
+
+    /// Rough arcs of an ellipse, three to five, that overlap, in any order, each drawn either way.
+    #[test]
+    fn rough_arcs_of_an_ellipse_close(
+        count in 3..=5_usize,
+        height in 0.15..0.4,
+        start in 0.0..1.0,
+        overlap in 0.02..0.1,
+        arcs in prop::collection::vec((-1.0..1.0, -1.0..1.0, 0.0..6.3, any::<bool>(), any::<u32>()), 5),
+    ) {
+        let ellipse = |t: f64| {
+            let angle = std::f64::consts::TAU * t;
+            DVec3::new(0.3 * angle.cos(), height * angle.sin(), 0.0)
+        };
+        let share = 1.0 / count as f64;
+        let mut drawn: Vec<(u32, Curve)> = arcs[..count]
+            .iter()
+            .enumerate()
+            .map(|(k, (x, y, phase, turned, order))| {
+                let from = start + share * k as f64;
+                // The hand is off by 4 mm, and shakes by 1.5 mm.
+                let rough = |t: f64| 0.004 * DVec3::new(*x, *y, 0.0) + DVec3::Y * 0.0015 * f64::sin(200.0 * t + phase);
+                let arc = stroke("arc", [from, from + share + overlap], ellipse, rough);
+                (*order, if *turned { arc.reversed() } else { arc })
+            })
+            .collect();
+        drawn.sort_by_key(|(order, _)| *order);
+        let strokes: Vec<Curve> = drawn.into_iter().map(|(_, arc)| arc).collect();
+        let lines = clean(&strokes, &CLEANING).unwrap();
+        prop_assert_eq!(lines.len(), 1);
+        prop_assert!(lines[0].curve.is_closed());
+        let (length, off) = (ArcLength::of(&lines[0].curve).length(), off(&lines[0].curve, ellipse, true));
+        prop_assert!((length - around(ellipse)).abs() < 0.05 && off < 0.008, "{length} {off}");
     }
 
     #[test]

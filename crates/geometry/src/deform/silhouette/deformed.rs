@@ -34,6 +34,11 @@ pub struct ViewFit {
     pub overshoot: f64,
     /// The section that stands out most.
     pub section: usize,
+    /// Largest distance of the strokes from the straight lines between the pins of neighbouring sections, metres: the
+    /// detail that falls between sections.
+    pub gap: f64,
+    /// The first of the two sections between which it is.
+    pub gap_after: usize,
 }
 
 /// Gathers how well sections meet their targets.
@@ -47,7 +52,14 @@ pub(super) struct Fits {
 
 impl Fits {
     pub(super) fn new(views: Vec<(View, [usize; 2])>, diagonal: f64) -> Self {
-        let views = views.into_iter().map(|(view, columns)| ViewFit { view, columns, overshoot: 0.0, section: 0 });
+        let views = views.into_iter().map(|(view, columns)| ViewFit {
+            view,
+            columns,
+            overshoot: 0.0,
+            section: 0,
+            gap: 0.0,
+            gap_after: 0,
+        });
         Self { views: views.collect(), largest_move: 0.0, diagonal, tip_gap: 0.0 }
     }
 
@@ -67,6 +79,13 @@ impl Fits {
         }
     }
 
+    /// What falls between sections in each view, and after which.
+    pub(super) fn gaps(&mut self, gaps: &[(f64, usize)]) {
+        for (fit, gap) in self.views.iter_mut().zip(gaps) {
+            (fit.gap, fit.gap_after) = *gap;
+        }
+    }
+
     pub(super) fn finish(self, sections: Sections) -> SilhouetteDeformed {
         let mut warnings = Vec::new();
         for fit in &self.views {
@@ -77,6 +96,16 @@ impl Fits {
                     fit.section,
                     fit.overshoot,
                     fit.view.name()
+                ));
+            }
+            if fit.gap > NOTICED * self.diagonal {
+                warnings.push(format!(
+                    "Sections {} and {} are too far apart for the detail of the {} view's strokes, which run {:.5} m \
+                     beside the line between them: space sections by detail, or give the primitive more.",
+                    fit.gap_after,
+                    fit.gap_after + 1,
+                    fit.view.name(),
+                    fit.gap
                 ));
             }
         }

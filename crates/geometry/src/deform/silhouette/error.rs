@@ -143,6 +143,21 @@ pub enum SilhouetteError {
         /// The outline or a section.
         what: String,
     },
+    /// A tolerance out of its range.
+    #[error("the tolerance is {value} of the sketch's diagonal: give 0.000001 to 1")]
+    Tolerance {
+        /// The tolerance.
+        value: f64,
+    },
+    /// Strokes of too much detail.
+    #[error(
+        "to follow the detail of the strokes takes {at_least} sections or more, above 10 million points: smooth the \
+         strokes, or raise the tolerance"
+    )]
+    TooMuchDetail {
+        /// Sections that are needed at least.
+        at_least: usize,
+    },
     /// Sections that do not close.
     #[error("the sections are open: only closed sections have silhouettes on two sides")]
     SectionsAreOpen,

@@ -11,7 +11,10 @@ mod deformed;
 mod error;
 mod outline;
 pub(crate) mod pair;
+#[cfg(test)]
+mod properties;
 mod ring;
+mod spacing;
 #[cfg(test)]
 mod tests;
 pub(crate) mod track;
@@ -22,6 +25,7 @@ pub use deformed::{SilhouetteDeformed, ViewFit};
 pub use error::{SilhouetteError, StrokesError};
 pub use pair::Silhouette;
 pub use ring::Contact;
+pub use spacing::SectionSpacing;
 pub use track::StrokeMatching;
 
 use self::columns::Columns;
@@ -46,6 +50,8 @@ pub struct SilhouetteOptions {
     /// Whether, with strokes of one view, the rails of the sections keep their place along the stack, so that silhouettes
     /// of an earlier view stay exact. Rails on the pinned sides follow the strokes.
     pub hold_rails: bool,
+    /// Where sections stand along the stack. Does nothing where a view looks along it.
+    pub spacing: SectionSpacing,
 }
 
 impl Default for SilhouetteOptions {
@@ -56,6 +62,7 @@ impl Default for SilhouetteOptions {
             matching: StrokeMatching::default(),
             contact: Contact::default(),
             hold_rails: true,
+            spacing: SectionSpacing::default(),
         }
     }
 }
@@ -79,7 +86,9 @@ const ONE_POINT: f64 = 1e-9;
 ///   becomes; the others follow by the beam along the stack, as with [`super::deform_by_cross_section`].
 ///
 /// Sections that shrink below a fifth of their width may stand out beyond their pins by some 0.2 % of their former width;
-/// [`ViewFit::overshoot`] says by how much, and there is a warning from 0.05 % of the sketch's diagonal on.
+/// [`ViewFit::overshoot`] says by how much. What strokes do between neighbouring sections is lost, and
+/// [`ViewFit::gap`] says how much; [`SectionSpacing::ByDetail`] adds the sections that it takes. There are warnings from
+/// 0.05 % of the sketch's diagonal on.
 ///
 /// # Errors
 /// [`SilhouetteError`] for views that are not at right angles, strokes that are no pair or do not fit the view, a stack
@@ -100,7 +109,10 @@ pub fn deform_to_silhouette(
         };
         return outline::deform(sections, only, options, progress);
     }
-    SilhouetteDeformer::new(sections, &views, options)?.deform(silhouettes, progress)
+    let deformer = SilhouetteDeformer::new(sections, &views, options)?;
+    let SectionSpacing::ByDetail(tolerance) = options.spacing else { return deformer.deform(silhouettes, progress) };
+    let stack = deformer.by_detail(silhouettes, tolerance, &|done| progress(0.3 * done))?;
+    deformer.on(&stack)?.deform(silhouettes, &|done| progress(0.3 + 0.7 * done))
 }
 
 /// A stack of sections made ready for silhouettes of given views: beams are factored and columns found once, so that
@@ -124,6 +136,14 @@ struct Prepared {
     shares: [Vec<f64>; 2],
     /// Lowest and highest corner of the stack as seen.
     bounds: [DVec2; 2],
+}
+
+/// The strokes of all views, checked.
+struct Drawn {
+    /// In each view that on the left and that on the right.
+    tracks: Vec<[Track; 2]>,
+    /// Diagonal of the box around the strokes of a view, the larger of both, metres.
+    diagonal: f64,
 }
 
 /// A pinned column, and the view and side of the stroke that moves it, or none where it is held.
@@ -156,12 +176,7 @@ impl<'a> SilhouetteDeformer<'a> {
                 return Err(SilhouetteError::EndOn { view: view.name() });
             }
             let sides = columns.sides(*view).ok_or(SilhouetteError::EndOn { view: view.name() })?;
-            let mut shares = [Vec::new(), Vec::new()];
-            for (side, column) in shares.iter_mut().zip(sides) {
-                let line: Vec<DVec2> = sections.iter().map(|section| view.flat(section[column])).collect();
-                let track = Track::new(&line, options.matching, view.flat(along));
-                side.extend(track.ok_or(SilhouetteError::EndOn { view: view.name() })?.given());
-            }
+            let shares = shares(sections, *view, sides, options.matching, along)?;
             let bounds = sections
                 .points()
                 .iter()
@@ -207,7 +222,18 @@ impl<'a> SilhouetteDeformer<'a> {
         Ok(Self { sections, views: prepared, components, matching: options.matching, along })
     }
 
-    /// The sections with these silhouettes, one of each view prepared for, in that order.
+    /// The same for another stack of as many points a section that stands where this one does.
+    fn on<'b>(&self, sections: &'b Sections) -> Result<SilhouetteDeformer<'b>, SilhouetteError> {
+        let mut views = self.views.clone();
+        for prepared in &mut views {
+            prepared.shares = shares(sections, prepared.view, prepared.columns, self.matching, self.along)?;
+        }
+        let components = self.components.clone();
+        Ok(SilhouetteDeformer { sections, views, components, matching: self.matching, along: self.along })
+    }
+
+    /// The sections with these silhouettes, one of each view prepared for, in that order. They are as many as given,
+    /// whatever [`SilhouetteOptions::spacing`] says.
     ///
     /// # Errors
     /// [`SilhouetteError`] as [`deform_to_silhouette`].
@@ -221,6 +247,37 @@ impl<'a> SilhouetteDeformer<'a> {
             false => Err(SilhouetteError::Cancelled),
         };
         go_on(0, 1)?;
+        let drawn = self.drawn(silhouettes)?;
+        let Drawn { tracks, diagonal } = &drawn;
+        let stack = self.sections;
+        let mut fits = Fits::new(self.views.iter().map(|view| (view.view, view.columns)).collect(), *diagonal);
+        fits.gaps(&self.off_chords(&drawn));
+        let mut rows = Vec::with_capacity(stack.len());
+        for (k, section) in stack.iter().enumerate() {
+            go_on(k, stack.len())?;
+            let targets: Vec<[DVec2; 2]> = self
+                .views
+                .iter()
+                .zip(tracks)
+                .map(|(view, tracks)| [0, 1].map(|side| tracks[side].at(view.shares[side][k])))
+                .collect();
+            let row = self.section(k, section, &targets, *diagonal, &mut fits)?;
+            fits.section(k, section, &row, &targets);
+            rows.push(row);
+        }
+        let mut rails: Vec<usize> = self.views.iter().flat_map(|view| view.columns).collect();
+        if self.views.len() == 1 {
+            rails.extend(stack.rails());
+        }
+        rails.sort_unstable();
+        rails.dedup();
+        go_on(1, 1)?;
+        let sections = Sections::new(rows, true, rails)?;
+        Ok(fits.finish(sections))
+    }
+
+    /// Both strokes of each view, checked, and the larger diagonal.
+    fn drawn(&self, silhouettes: &[Silhouette<'_>]) -> Result<Drawn, SilhouetteError> {
         if silhouettes.len() != self.views.len()
             || silhouettes.iter().zip(&self.views).any(|(silhouette, view)| silhouette.view != view.view)
         {
@@ -242,29 +299,7 @@ impl<'a> SilhouetteDeformer<'a> {
             tracks.push([left?, right?]);
             diagonal = diagonal.max(pair.diagonal);
         }
-        let mut fits = Fits::new(self.views.iter().map(|view| (view.view, view.columns)).collect(), diagonal);
-        let mut rows = Vec::with_capacity(stack.len());
-        for (k, section) in stack.iter().enumerate() {
-            go_on(k, stack.len())?;
-            let targets: Vec<[DVec2; 2]> = self
-                .views
-                .iter()
-                .zip(&tracks)
-                .map(|(view, tracks)| [0, 1].map(|side| tracks[side].at(view.shares[side][k])))
-                .collect();
-            let row = self.section(k, section, &targets, diagonal, &mut fits)?;
-            fits.section(k, section, &row, &targets);
-            rows.push(row);
-        }
-        let mut rails: Vec<usize> = self.views.iter().flat_map(|view| view.columns).collect();
-        if self.views.len() == 1 {
-            rails.extend(stack.rails());
-        }
-        rails.sort_unstable();
-        rails.dedup();
-        go_on(1, 1)?;
-        let sections = Sections::new(rows, true, rails)?;
-        Ok(fits.finish(sections))
+        Ok(Drawn { tracks, diagonal })
     }
 
     /// One section moved to its targets, a pair in each view.
@@ -334,6 +369,22 @@ impl Prepared {
         }
         Ok(())
     }
+}
+
+/// Share of the way of each section on both columns.
+fn shares(
+    sections: &Sections,
+    view: View,
+    columns: [usize; 2],
+    matching: StrokeMatching,
+    along: DVec3,
+) -> Result<[Vec<f64>; 2], SilhouetteError> {
+    let [left, right] = columns.map(|column| {
+        let line: Vec<DVec2> = sections.iter().map(|section| view.flat(section[column])).collect();
+        let track = Track::new(&line, matching, view.flat(along)).ok_or(SilhouetteError::EndOn { view: view.name() });
+        track.map(|track| track.given().collect())
+    });
+    Ok([left?, right?])
 }
 
 /// Share of the way around a section on each side of a pin on which a section that touches a stroke stays level, so that

@@ -173,7 +173,8 @@ fn a_bent_limb_and_a_stroke_that_folds_back_are_followed() {
     let folds = inner.points().windows(2).filter(|w| w[1].y < w[0].y).count();
     assert!(folds > 20, "{folds}");
     let made = apply(&limb, &[(View::FRONT, &[outer.clone(), inner.clone()])], &SilhouetteOptions::default());
-    assert!(made.warnings.is_empty(), "{:?}", made.warnings);
+    // Where the stroke folds it has more detail than sections this far apart show.
+    assert!(made.warnings.iter().all(|w| w.contains("too far apart")), "{:?}", made.warnings);
     for (column, drawn) in made.views[0].columns.iter().zip([&inner, &outer]) {
         let line: Vec<DVec3> = made.sections.iter().map(|section| section[*column].with_z(0.0)).collect();
         assert!(line.iter().all(|p| crate::curve::closest(drawn, *p).distance < 1e-12));
@@ -233,6 +234,63 @@ fn shrinking_too_much_is_told() {
     let made = apply(&stack(9, 32, |_| 0.5), &[(View::FRONT, &strokes)], &height());
     assert!(made.views[0].overshoot > 5e-4, "{:?}", made.views);
     assert!(made.warnings[0].contains("shrinks too much"), "{:?}", made.warnings);
+}
+
+#[test]
+fn sections_by_detail_stand_at_corners_and_keep_those_given() {
+    // A stroke of straight pieces with two corners, one on each side, at heights where no section is given.
+    let corner = |at: f64, out: f64| move |t: f64| 0.4 + out * (1.0 - (t - at).abs() / at.max(1.0 - at));
+    let (right, left) = (corner(0.41, 0.1), corner(0.77, 0.05));
+    let strokes = [
+        [(0.0, right(0.0)), (0.41, right(0.41)), (1.0, right(1.0))].map(|(y, x)| DVec3::new(x, y, 0.0)),
+        [(0.0, left(0.0)), (0.77, left(0.77)), (1.0, left(1.0))].map(|(y, x)| DVec3::new(-x, y, 0.0)),
+    ]
+    .map(|points| Curve::new("stroke", points.to_vec(), false).unwrap());
+    let start = stack(3, 32, |y| 0.4 - 0.1 * y);
+    let options = SilhouetteOptions { spacing: SectionSpacing::ByDetail(1e-3), ..height() };
+    let made = apply(&start, &[(View::FRONT, &strokes)], &options);
+    // Within what a corner in the plan of the places may be off.
+    let heights: Vec<f64> = (0..made.sections.len()).map(|k| made.sections.centre(k).y).collect();
+    for wanted in [0.0, 0.41, 0.5, 0.77, 1.0] {
+        assert!(heights.iter().any(|y| (y - wanted).abs() < 1e-12), "{wanted} among {heights:?}");
+    }
+    assert!(made.views[0].gap < 1e-12 && made.warnings.is_empty(), "{:?}", made.views);
+    // Closer to one another the closer they are to a corner, where a spline would swing.
+    let step = |at: f64| {
+        let k = heights.iter().position(|y| (y - at).abs() < 1e-12).unwrap();
+        (heights[k + 1] - heights[k]).max(heights[k] - heights[k - 1])
+    };
+    assert!(step(0.41) < 0.12 && step(0.77) < 0.12 && heights.len() < 40, "{heights:?}");
+    // Straight strokes ask for nothing, and what is given stays to the bit.
+    let straight = pair(View::FRONT, |t| 0.3 + 0.1 * t, |_| -0.3);
+    let made = apply(&start, &[(View::FRONT, &straight)], &options);
+    let as_given = apply(&start, &[(View::FRONT, &straight)], &height());
+    assert_eq!(made, as_given);
+    let silhouettes = [Silhouette { view: View::FRONT, strokes: &strokes }];
+    let deformer = SilhouetteDeformer::new(&start, &[View::FRONT], &options).unwrap();
+    let more = deformer.by_detail(&silhouettes, 1e-3, &|_| true).unwrap();
+    for given in start.iter() {
+        assert!(more.iter().any(|section| section == given));
+    }
+    for wrong in [0.0, f64::NAN, 2.0] {
+        let refused = deformer.by_detail(&silhouettes, wrong, &|_| true).unwrap_err();
+        assert!(matches!(refused, SilhouetteError::Tolerance { .. }));
+    }
+    assert_eq!(deformer.by_detail(&silhouettes, 1e-3, &|done| done < 0.5), Err(SilhouetteError::Cancelled));
+}
+
+#[test]
+fn a_stroke_of_boundless_detail_is_refused() {
+    let shaken = |side: f64| {
+        let at = |k: u32| DVec3::new(side * (0.4 + 0.01 * f64::from(k % 2)), f64::from(k) / 40_000.0, 0.0);
+        Curve::new("shaken", (0..=40_000).map(at).collect(), false).unwrap()
+    };
+    let options = SilhouetteOptions { spacing: SectionSpacing::ByDetail(1e-5), ..height() };
+    let strokes = [shaken(1.0), shaken(-1.0)];
+    let silhouettes = [Silhouette { view: View::FRONT, strokes: &strokes }];
+    let refused = deform_to_silhouette(&stack(2, 1024, |_| 0.4), &silhouettes, &options, &|_| true).unwrap_err();
+    assert!(matches!(refused, SilhouetteError::TooMuchDetail { at_least } if at_least > 9_000), "{refused}");
+    assert!(refused.to_string().contains("smooth the strokes, or raise the tolerance"), "{refused}");
 }
 
 #[test]

@@ -119,6 +119,13 @@ impl Track {
         self.given.iter().map(|k| self.shares[*k])
     }
 
+    /// The points strictly between two shares, and their shares.
+    pub(crate) fn between(&self, from: f64, to: f64) -> (&[DVec2], &[f64]) {
+        let first = self.shares.partition_point(|s| *s <= from);
+        let inside = first..self.shares.partition_point(|s| *s < to).max(first);
+        (&self.points[inside.clone()], &self.shares[inside])
+    }
+
     /// The point at a share of the way: the first and the last one at 0 and 1 and beyond, and the last of several at the
     /// same share between.
     pub(crate) fn at(&self, share: f64) -> DVec2 {
