@@ -3,10 +3,12 @@
 pub mod adjacency;
 pub mod caps;
 pub mod check;
+pub mod compare;
 pub mod crease;
 pub mod cut;
 pub mod distance;
 pub(crate) mod ear_clipping;
+pub mod figures;
 pub mod geodesic;
 pub mod manifold;
 pub mod measure;
@@ -26,7 +28,9 @@ pub mod weld;
 
 pub use adjacency::Adjacency;
 pub use check::{MeshCheck, check, check_while};
+pub use compare::{Comparison, EdgeChange, Gap, compare};
 pub use distance::{MeshDistance, Nearest};
+pub use figures::{MeshFigures, figures};
 pub use manifold::ManifoldReport;
 pub use polygon::{Mesh, MeshError};
 pub use ray::{MeshRays, RayHit};
