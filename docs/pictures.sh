@@ -21,6 +21,10 @@ draw sea-star sea-star 480x440
 draw forearm forearm 400x480 --wireframe
 draw hip hip 480x480
 draw from-image from-image 480x360
+draw bar-bent bar-bent 480x400 --view front
+draw bar-twisted bar-twisted 240x480 --wireframe
+draw hand hand 560x400 --view side
+draw body-posed body-posed 400x640
 draw open-strokes open-strokes 480x400 --curves
 for experiment in cantilever supported tyre; do
     "$maquette" render "graphs/experiments/$experiment.ron" -o "docs/pictures/$experiment.png" --size 640x400 --quiet \

@@ -115,9 +115,13 @@ fn every_saved_graph_is_tested_here() {
     assert_eq!(
         saved,
         [
+            "bar-bent",
+            "bar-twisted",
+            "body-posed",
             "forearm",
             "from-image",
             "from-template",
+            "hand",
             "head",
             "hip",
             "human",
@@ -152,6 +156,10 @@ fn no_saved_graph_has_a_node_without_use() {
         "leg-deformed",
         "sea-star",
         "torso",
+        "bar-bent",
+        "bar-twisted",
+        "hand",
+        "body-posed",
     ] {
         let saved = Saved::load(name);
         let used = saved.graph.upstream(&saved.graph.results());
