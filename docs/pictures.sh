@@ -32,6 +32,10 @@ draw shoulder-cap shoulder-cap 480x480
 draw eye-socket eye-socket 480x400
 draw forearm-sheet forearm-sheet 360x480
 draw knee-guard knee-guard 360x480 --curves
+draw bar-bent bar-bent 480x400 --view front
+draw bar-twisted bar-twisted 240x480 --wireframe
+draw hand hand 560x400 --view side
+draw body-posed body-posed 400x640
 draw open-strokes open-strokes 480x400 --curves
 for experiment in cantilever supported tyre; do
     "$maquette" render "graphs/experiments/$experiment.ron" -o "docs/pictures/$experiment.png" --size 640x400 --quiet \

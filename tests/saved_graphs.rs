@@ -118,10 +118,14 @@ fn every_saved_graph_is_tested_here() {
             "eye-socket",
             "blend",
             "chest",
+            "bar-bent",
+            "bar-twisted",
+            "body-posed",
             "forearm",
             "forearm-sheet",
             "from-image",
             "from-template",
+            "hand",
             "head",
             "hip",
             "human",
@@ -172,6 +176,10 @@ fn no_saved_graph_has_a_node_without_use() {
         "chest",
         "patch",
         "shoulder",
+        "bar-bent",
+        "bar-twisted",
+        "hand",
+        "body-posed",
     ] {
         let saved = Saved::load(name);
         let used = saved.graph.upstream(&saved.graph.results());

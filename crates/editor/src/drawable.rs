@@ -9,6 +9,7 @@ use glam::{DVec3, Vec3};
 use maquette_geometry::curve::Curve;
 use maquette_geometry::mesh::crease::{CREASE_DEGREES, creased_normals};
 use maquette_geometry::mesh::measure::points_bounds;
+use maquette_geometry::mesh::select::split;
 use maquette_geometry::mesh::{Mesh, mean_curvature, triangles};
 use maquette_geometry::scene::Material;
 use maquette_geometry::surface::tessellate::{Tessellation, tessellate};
@@ -142,11 +143,19 @@ fn drawable(value: &Value, curvature: bool) -> Option<Drawable> {
         })
     } else if let Some(surface) = value.get::<wire::Surface>() {
         of_surface(surface, curvature)
+    } else if let Some(selection) = value.get::<wire::Selection>() {
+        selected_part(selection, curvature)
     } else {
         let borders = value.get::<wire::Borders>()?;
         let curves: Vec<Curve> = borders.0.iter().map(|border| border.curve().clone()).collect();
         Some(of_curves(&curves, None))
     }
+}
+
+/// What is selected of the mesh, cut where weights pass 0.5.
+fn selected_part(selection: &wire::Selection, curvature: bool) -> Option<Drawable> {
+    let [selected, _] = split(&selection.mesh, &selection.weights).ok()?;
+    (selected.polygon_count() > 0).then(|| of_mesh(&selected, None, curvature))
 }
 
 /// Sections that are series, as lines through this many of their points.

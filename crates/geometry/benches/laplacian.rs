@@ -72,5 +72,30 @@ fn deformation(c: &mut Criterion) {
     }
 }
 
-criterion_group! { name = benches; config = Criterion::default().sample_size(10); targets = deformation }
+/// A region of about 50k vertices in a ring of a million: what it costs beyond the region itself is a walk over the
+/// mesh and its copy.
+fn region_in_a_large_mesh(c: &mut Criterion) {
+    let mesh = Arc::new(ring(2000, 500));
+    let near = |reach: f64| {
+        Selection::by(mesh.positions().len(), |v| {
+            let p = mesh.positions()[v];
+            p.x > 0.0 && p.z.atan2(p.x).abs() < reach
+        })
+    };
+    let (region, handle) = (near(0.16), near(0.003));
+    let handles = [Handle { selection: &handle, holds: Holds::Both }];
+    let options = BindOptions::default();
+    let bind = || Binding::new(mesh.clone(), Some(&region), &handles, &options, &|_| true).expect("it binds");
+    MEMORY.reset_peak_usage();
+    let before = MEMORY.current_usage_as_mb();
+    let bound = bind();
+    eprintln!("region of a million: {:?}, {:.0} MB more at most", bound.report(), MEMORY.peak_usage_as_mb() - before);
+    let transforms = [HandleTransform::translation(0.1 * DVec3::X)];
+    c.bench_function("50k free vertices of a million: bind", |b| b.iter(|| black_box(bind())));
+    c.bench_function("50k free vertices of a million: drag", |b| {
+        b.iter(|| black_box(bound.drag(&transforms).expect("it moves")));
+    });
+}
+
+criterion_group! { name = benches; config = Criterion::default().sample_size(10); targets = deformation, region_in_a_large_mesh }
 criterion_main!(benches);

@@ -12,6 +12,7 @@ use maquette_graph::{Catalogue, Value};
 use crate::wire;
 
 mod analytic;
+mod handles;
 
 /// Lets golden files hold values of all wire types of this library.
 pub(crate) fn register(catalogue: &mut Catalogue) {
@@ -21,6 +22,10 @@ pub(crate) fn register(catalogue: &mut Catalogue) {
     catalogue.freezable::<wire::EllipticSections>();
     catalogue.freezable::<wire::CrossSections>();
     catalogue.freezable::<wire::Borders>();
+    catalogue.freezable::<wire::Selection>();
+    catalogue.freezable::<wire::Held>();
+    catalogue.freezable::<wire::Handles>();
+    catalogue.freezable::<wire::Bound>();
     catalogue.freezable::<wire::Shape>();
     catalogue.freezable::<wire::Surface>();
     catalogue.freezable::<wire::Mesh>();

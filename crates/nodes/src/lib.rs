@@ -16,6 +16,8 @@ mod placement;
 mod primitive;
 pub mod results;
 mod section;
+mod select;
+mod selecting;
 mod silhouettes;
 mod stiffness;
 mod surface;
@@ -48,9 +50,12 @@ fn kinds() -> Vec<NodeKind> {
         curve::transform::kind(),
         deform::align_primitive::kind(),
         deform::beam::kind(),
+        deform::bind_deformation::kind(),
+        deform::deform::kind(),
         deform::deform_by_cross_section::kind(),
         deform::deform_to_curves::kind(),
         deform::deform_to_silhouette::kind(),
+        deform::handle::kind(),
         generate::blend::kind(),
         generate::detail_generator::kind(),
         input::import_curves::kind(),
@@ -59,10 +64,13 @@ fn kinds() -> Vec<NodeKind> {
         input::sketch::kind(),
         input::trace_image::kind(),
         mesh::caps::kind(),
+        mesh::compare_meshes::kind(),
         mesh::cut_with_curve::kind(),
         mesh::cut_with_plane::kind(),
         mesh::join_meshes::kind(),
         mesh::join_parts::kind(),
+        mesh::measure_mesh::kind(),
+        mesh::mesh_smooth::kind(),
         mesh::mirror_mesh::kind(),
         mesh::resample_border::kind(),
         mesh::silhouette_of::kind(),
@@ -80,6 +88,16 @@ fn kinds() -> Vec<NodeKind> {
         section::order_sections::kind(),
         section::pick_sections::kind(),
         section::sections_from_mesh::kind(),
+        select::change_selection::kind(),
+        select::combine_selections::kind(),
+        select::select_by_distance::kind(),
+        select::select_by_mesh::kind(),
+        select::select_by_normal::kind(),
+        select::select_by_shape::kind(),
+        select::select_by_stroke::kind(),
+        select::select_nearest::kind(),
+        select::select_points::kind(),
+        select::split_by_selection::kind(),
         surface::continuity_report::kind(),
         surface::join_surfaces::kind(),
         surface::section_at::kind(),
@@ -123,6 +141,11 @@ pub fn catalogue() -> Result<Catalogue, CatalogueError> {
         .conversion::<wire::Sections, wire::CrossSections>(|points| Ok(wire::CrossSections::Points(points.clone())))?;
     catalogue.conversion::<wire::EllipticSections, wire::CrossSections>(|series| {
         Ok(wire::CrossSections::Series(series.clone()))
+    })?;
+    // Binding takes no notice of how handles move, and so is not done again while they are dragged.
+    catalogue.conversion::<wire::Handles, wire::Held>(|handles| Ok(handles.held()))?;
+    catalogue.collect::<wire::Handles, wire::Handles>(|lists| {
+        Ok(wire::Handles(lists.iter().flat_map(|list| list.0.iter().cloned()).collect()))
     })?;
     catalogue.collect::<wire::EllipticSections, wire::EllipticSections>(|stacks| {
         Ok(wire::EllipticSections::new(stacks.iter().flat_map(|stack| stack.0.iter().cloned()).collect()))

@@ -2,10 +2,14 @@
 
 mod analytic;
 mod border;
+mod handles;
+mod selection;
 mod shape;
 
 pub use analytic::{CrossSections, EllipticSections, NamedSection, SectionFit, Surface};
 pub use border::Borders;
+pub use handles::{Bound, Handle, Handles, Held, HeldSelection};
+pub use selection::Selection;
 pub use shape::Shape;
 
 use std::sync::Arc;

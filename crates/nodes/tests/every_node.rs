@@ -14,13 +14,14 @@ use std::sync::Arc;
 use glam::{DVec2, DVec3};
 use maquette_geometry::border::Border;
 use maquette_geometry::curve::Curve;
-use maquette_geometry::mesh::Mesh;
+use maquette_geometry::deform::laplacian::{HandleTransform, Holds, Reconstruction};
+use maquette_geometry::mesh::{Mesh, Selection};
 use maquette_geometry::sections::Sections;
 use maquette_geometry::surface::analytic::{AnalyticSurface, SurfaceOptions};
 use maquette_geometry::trigonometric::{EllipticSection, EllipticSegment, PlaneFrame, Series};
 use maquette_graph::{
     Catalogue, Evaluation, Evaluator, Graph, Literal, LiteralKind, NodeId, NodeKind, OutcomeState, Request, Stroke,
-    StrokePoint, Wire, WireType,
+    StrokePoint, Value, Wire, WireType,
 };
 use maquette_nodes::wire;
 
@@ -66,6 +67,66 @@ fn wall() -> Mesh {
     let row = |y: f64| corners.map(|(x, z)| DVec3::new(x, y, -z));
     let quads = (0..4_u32).map(|k| [k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k]);
     Mesh::new([row(0.0), row(2.0)].concat(), quads).unwrap()
+}
+
+/// A tube of four walls in eight rows, whose lower end is selected.
+fn tower() -> (wire::Mesh, wire::Selection) {
+    let corners = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
+    let rows = (0..9).flat_map(|y| corners.map(|(x, z)| DVec3::new(x, 0.5 * f64::from(y), -z)));
+    let at = |row: u32, k: u32| 4 * row + k % 4;
+    let quads =
+        (0..8).flat_map(|row| (0..4).map(move |k| [at(row, k), at(row, k + 1), at(row + 1, k + 1), at(row + 1, k)]));
+    let mesh = wire::Mesh::new(Mesh::new(rows.collect(), quads).unwrap());
+    let low = Selection::by(36, |v| v < 8);
+    (mesh.clone(), wire::Selection::new(low, mesh))
+}
+
+/// Handles that hold selections and move so.
+fn handles(held: &[(&wire::Selection, HandleTransform)]) -> wire::Handles {
+    let handle = |(selection, transform): &(&wire::Selection, HandleTransform)| wire::Handle {
+        held: wire::HeldSelection { selection: (*selection).clone(), holds: Holds::Both },
+        transform: *transform,
+    };
+    wire::Handles(held.iter().map(handle).collect())
+}
+
+fn register_handles(catalogue: &mut Catalogue) {
+    let (mesh, low) = tower();
+    let turned = handles(&[(&low, HandleTransform::rotation(DVec3::ZERO, DVec3::Y, 7.0))]);
+    let bind = |held: wire::Held, region: Option<wire::Selection>| {
+        let hash = Value::new(mesh.clone()).hash();
+        wire::Bound::new(&mesh, hash, region, held, Reconstruction::Coordinates, &|_| true).unwrap()
+    };
+    let square = wire::Mesh::new(square());
+    catalogue.register(constant("good-selection", wire::Selection::new(Selection::by(4, |_| true), square))).unwrap();
+    catalogue.register(constant("for-bind-deformation-mesh", mesh.clone())).unwrap();
+    catalogue.register(constant("good-held", turned.held())).unwrap();
+    catalogue.register(constant("good-handles", turned.clone())).unwrap();
+    catalogue.register(constant("good-bound", bind(turned.held(), None))).unwrap();
+    let of =
+        |weights: Vec<f64>, mesh: &wire::Mesh| wire::Selection::new(Selection::new(weights).unwrap(), mesh.clone());
+    let nasty_selections = [
+        of(vec![], &wire::Mesh::new(Mesh::default())),
+        // Weights of another mesh than the one they are said to be of.
+        of(vec![1.0; 3], &mesh),
+        of(vec![0.0; 36], &mesh),
+        of(vec![1.0; 5000], &wire::Mesh::new(Mesh::default())),
+    ];
+    let huge = HandleTransform::translation(DVec3::splat(1e308));
+    let flat = HandleTransform::scale(DVec3::ZERO, 0.0);
+    for (index, selection) in nasty_selections.iter().enumerate() {
+        catalogue.register(constant(&format!("nasty-selection-{index}"), selection.clone())).unwrap();
+        let alone = handles(&[(selection, HandleTransform::default())]);
+        catalogue.register(constant(&format!("nasty-held-{index}"), alone.held())).unwrap();
+        catalogue.register(constant(&format!("nasty-handles-{index}"), alone)).unwrap();
+    }
+    let nasty_handles = [wire::Handles::default(), handles(&[(&low, huge)]), handles(&[(&low, flat), (&low, huge)])];
+    for (index, nasty) in nasty_handles.into_iter().enumerate() {
+        catalogue.register(constant(&format!("nasty-held-of-{index}"), nasty.held())).unwrap();
+        catalogue.register(constant(&format!("nasty-handles-of-{index}"), nasty)).unwrap();
+    }
+    let none = low.with_weights(Selection::by(36, |_| false));
+    catalogue.register(constant("nasty-bound-0", bind(wire::Held::default(), Some(none)))).unwrap();
 }
 
 /// A kind that gives a fixed value, for linking to inputs that take no literal.
@@ -207,6 +268,7 @@ fn test_catalogue() -> Catalogue {
     catalogue.register(constant("good-curve", wire::Curve(circle("ring", 1.2, 1.25)))).unwrap();
     catalogue.register(constant("good-sections", wire::Sections(tube()))).unwrap();
     catalogue.register(constant("good-mesh", wire::Mesh::new(square()))).unwrap();
+    register_handles(&mut catalogue);
     catalogue
 }
 

@@ -15,7 +15,8 @@ use std::path::{Path, PathBuf};
 
 use glam::{DVec2, DVec3};
 use maquette_geometry::curve::Curve;
-use maquette_geometry::mesh::Mesh;
+use maquette_geometry::deform::laplacian::{HandleTransform, Holds, Reconstruction};
+use maquette_geometry::mesh::{Mesh, Selection};
 use maquette_geometry::scene::Material;
 use maquette_geometry::sections::Sections;
 use maquette_geometry::surface::analytic::{AnalyticSurface, SurfaceOptions};
@@ -128,5 +129,29 @@ fn every_wire_type_comes_back_from_what_was_frozen() {
         let material = Material { metallic: 0.25, double_sided: true, ..Material::default() };
         let (mesh_hash, shared) = (Value::new(mesh.clone()).hash(), mesh.0);
         comes_back(wire::MeshResult { mesh: shared, mesh_hash, material });
+    }
+}
+
+#[test]
+fn selections_handles_and_bound_meshes_come_back() {
+    let points = (0..6).map(|i| DVec3::new(f64::from(i % 2), f64::from(i / 2), 0.1 * f64::from(i * i))).collect();
+    let mesh = wire::Mesh::new(Mesh::new(points, [[0_u32, 1, 3, 2], [2, 3, 5, 4]]).unwrap());
+    let soft = Selection::new(vec![1.0, 1.0, 1.0 / 3.0, 0.0, 0.25, 0.0]).unwrap();
+    let selection = wire::Selection::new(soft, mesh.clone());
+    comes_back(selection.clone());
+    let turned = HandleTransform::rotation(DVec3::X, DVec3::new(1.0, 2.0, 0.5), 7.0).scaled(1.5).shifted(DVec3::Y);
+    let handle = |holds: Holds| wire::Handle {
+        held: wire::HeldSelection { selection: selection.clone(), holds },
+        transform: turned,
+    };
+    let all = wire::Handles([Holds::Both, Holds::Position, Holds::Gradient].map(handle).to_vec());
+    comes_back(all.held());
+    comes_back(all);
+    comes_back(wire::Handles::default());
+    let region = selection.with_weights(selection.weights.inverted());
+    let hash = Value::new(mesh.clone()).hash();
+    for (region, reconstruction) in [(None, Reconstruction::Coordinates), (Some(region), Reconstruction::Edges)] {
+        let held = wire::Handles(vec![handle(Holds::Both)]).held();
+        comes_back(wire::Bound::new(&mesh, hash, region, held, reconstruction, &|_| true).unwrap());
     }
 }

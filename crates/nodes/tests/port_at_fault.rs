@@ -5,6 +5,8 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 use maquette_geometry::curve::Curve;
+use maquette_geometry::deform::laplacian::{HandleTransform, Holds};
+use maquette_geometry::mesh::{Mesh, Selection};
 use maquette_geometry::sections::Sections;
 use maquette_geometry::surface::analytic::{AnalyticSurface, SurfaceOptions};
 use maquette_geometry::trigonometric::{EllipticSection, EllipticSegment, PlaneFrame, Series};
@@ -396,4 +398,167 @@ fn simplify() {
     let points = report.figure("points").unwrap().value;
     assert!((6.0..=16.0).contains(&points), "{points}");
     assert_eq!(run(triangle, 0.0).run().unwrap().figure("points").unwrap().value, 4.0);
+}
+
+/// A net of 5 x 5 vertices, 4 m wide, in the plane y = 0.
+fn net() -> wire::Mesh {
+    let points = (0..25).map(|i| DVec3::new(f64::from(i % 5), 0.0, f64::from(i / 5))).collect();
+    let quads = (0..16_u32).map(|i| 5 * (i / 4) + i % 4).map(|a| [a, a + 5, a + 6, a + 1]);
+    wire::Mesh::new(Mesh::new(points, quads).unwrap())
+}
+
+fn selection(vertices: &[usize]) -> wire::Selection {
+    wire::Selection::new(Selection::by(25, |v| vertices.contains(&v)), net())
+}
+
+fn moved(selection: wire::Selection, transform: HandleTransform) -> wire::Handles {
+    let held = wire::HeldSelection { selection, holds: Holds::Both };
+    wire::Handles(vec![wire::Handle { held, transform }])
+}
+
+#[test]
+fn selections() {
+    let shape = |settings| Wiring { kind: "select-by-shape", links: vec![("mesh", constant("net", net()))], settings };
+    let half = |normal| vec![("shape", text("half-space")), ("normal", Literal::Vector(normal))];
+    shape(half([0.0; 3])).blames("normal", "direction has length 0");
+    shape(vec![("shape", text("capsule"))]).blames("curve", "needs a curve");
+    shape(vec![("size", Literal::Vector([1.0, -1.0, 1.0]))]).blames("size", "below 0");
+    let far = shape(vec![("centre", Literal::Vector([9.0; 3]))]).run().unwrap();
+    assert!(far.warnings[0].contains("whose 25 vertices lie between (0.0000, 0.0000, 0.0000)"), "{:?}", far.warnings);
+    assert!(far.warnings[0].contains("move the shape") && far.figure("selected").unwrap().value == 0.0);
+    let all = shape(half([1.0, 0.0, 0.0])).run().unwrap();
+    assert_eq!((all.figure("selected").unwrap().value, all.warnings.len()), (25.0, 0));
+    assert_eq!(all.table("bounds").unwrap().rows.len(), 3);
+
+    let empty = || constant("empty", wire::Mesh::new(Mesh::default()));
+    let of = |kind, link, settings| Wiring { kind, links: vec![("mesh", link)], settings };
+    of("select-nearest", empty(), vec![]).blames("mesh", "no polygons");
+    let closed = [[0_u32, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    let closed = Mesh::new(vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z], closed).unwrap();
+    let closed = || constant("closed", wire::Mesh::new(closed.clone()));
+    of("select-nearest", closed(), vec![("what", text("boundary-loop"))]).blames("what", "no boundary loop");
+    of("select-by-distance", empty(), vec![]).blames("mesh", "no polygons");
+    let nowhere = vec![("direction", Literal::Vector([0.0; 3]))];
+    of("select-by-normal", closed(), nowhere).blames("direction", "length 0");
+    let points = |points: &str| vec![("points", Literal::Text(points.to_owned()))];
+    of("select-points", closed(), points("1 2")).blames("points", "\"1 2\" is no point");
+    of("select-points", empty(), points("1 2 3")).blames("mesh", "no polygons");
+    let lost = of("select-points", closed(), points("1 0.001 0, 5 5 5")).run().unwrap();
+    assert!(lost.warnings[0].contains("point 1 at (5, 5, 5) no longer finds its place"), "{:?}", lost.warnings);
+    assert_eq!((lost.figure("lost").unwrap().value, lost.figure("selected").unwrap().value), (1.0, 1.0));
+    let part = Wiring {
+        kind: "select-by-mesh",
+        links: vec![("mesh", constant("net", net())), ("other", empty())],
+        settings: vec![],
+    };
+    part.blames("other", "no polygons to be near to");
+    let stroke = Wiring {
+        kind: "select-by-stroke",
+        links: vec![("mesh", empty()), ("strokes", constant("drawn", rails([0, 1, 2, 3])))],
+        settings: vec![],
+    };
+    stroke.blames("mesh", "no polygons");
+
+    let other = wire::Selection::new(Selection::by(4, |_| true), net());
+    let combine = |second: wire::Selection, by: &str| Wiring {
+        kind: "combine-selections",
+        links: vec![("first", constant("a", selection(&[1, 2]))), ("second", constant("b", second))],
+        settings: vec![("by", text(by))],
+    };
+    combine(other.clone(), "or").blames("second", "25 weights and the other 4");
+    let nothing = combine(selection(&[1, 2, 3]), "minus").run().unwrap();
+    assert!(nothing.warnings[0].starts_with("nothing is selected of the mesh"), "{:?}", nothing.warnings);
+    let change = |given| Wiring {
+        kind: "change-selection",
+        links: vec![("selection", constant("a", given))],
+        settings: vec![("steps", Literal::Integer(2))],
+    };
+    change(other.clone()).blames("selection", "4 weights and the other 25");
+    assert_eq!(change(selection(&[12])).run().unwrap().figure("selected").unwrap().value, 13.0);
+    let split = |links| Wiring { kind: "split-by-selection", links, settings: vec![] };
+    split(vec![("selection", constant("a", other))]).blames("selection", "25 weights and the other 4");
+    split(vec![("selection", constant("a", selection(&[1]))), ("mesh", closed())]).blames("mesh", "4 weights");
+}
+
+#[test]
+fn handles() {
+    let handle =
+        |given, settings| Wiring { kind: "handle", links: vec![("selection", constant("chosen", given))], settings };
+    handle(selection(&[]), vec![]).blames("selection", "has no vertex");
+    let no_axis = vec![("axis", Literal::Vector([0.0; 3])), ("angle", Literal::Number(10.0))];
+    handle(selection(&[1]), no_axis).blames("axis", "no direction");
+    handle(selection(&[1]), vec![("scale", Literal::Vector([1.0, 0.0, 1.0]))]).blames("scale", "above 0");
+    // Turned about the middle of its vertices.
+    let turn = vec![("axis", Literal::Vector([0.0, 0.0, 2.0])), ("angle", Literal::Number(180.0))];
+    let report = handle(selection(&[0, 1, 2]), turn).run().unwrap();
+    assert!((report.figure("largest-move").unwrap().value - 2.0).abs() < 1e-12);
+
+    let bind = |held: wire::Held, region: Option<wire::Selection>| {
+        let mut links = vec![("mesh", constant("net", net())), ("handles", constant("held", held))];
+        links.extend(region.map(|region| ("region", constant("chosen", region))));
+        Wiring { kind: "bind-deformation", links, settings: vec![] }
+    };
+    let still = |vertices: &[usize]| moved(selection(vertices), HandleTransform::default());
+    bind(wire::Held::default(), None).blames("handles", "is held by nothing");
+    bind(still(&[]).held(), None).blames("handles", "handle 0 has no vertex");
+    let other = wire::Selection::new(Selection::by(4, |_| true), net());
+    bind(moved(other.clone(), HandleTransform::default()).held(), None)
+        .blames("handles", "selection of handle 0 has 4");
+    bind(still(&[0, 1]).held(), Some(other)).blames("region", "the region has 4 weights");
+    let report = bind(still(&[0, 1]).held(), Some(selection(&[]))).run().unwrap();
+    assert!(report.warnings[0].contains("no vertex is free to move"), "{:?}", report.warnings);
+    let dot = Mesh::new(vec![DVec3::ONE; 25], net().0.polygons()).unwrap();
+    let flat = Wiring {
+        kind: "bind-deformation",
+        links: vec![("mesh", constant("dot", wire::Mesh::new(dot))), ("handles", constant("held", still(&[0]).held()))],
+        settings: vec![],
+    };
+    flat.blames("mesh", "the mesh has no area");
+
+    let bound = || {
+        let hash = maquette_graph::Value::new(net()).hash();
+        let held = still(&[0, 1, 5]).held();
+        let bound = wire::Bound::new(&net(), hash, None, held, Default::default(), &|_| true).unwrap();
+        constant("bound", bound)
+    };
+    let deform = |handles: wire::Handles| Wiring {
+        kind: "deform",
+        links: vec![("bound", bound()), ("handles", constant("moved", handles))],
+        settings: vec![],
+    };
+    deform(still(&[0])).blames("handles", "not the handles that the mesh is bound to (1 here, 1 there)");
+    let far = moved(selection(&[0, 1, 5]), HandleTransform::translation(DVec3::splat(1e308)));
+    deform(far).blames("handles", "move the handles less far");
+    let report = deform(moved(selection(&[0, 1, 5]), HandleTransform::translation(DVec3::X))).run().unwrap();
+    assert!((report.figure("largest-move").unwrap().value - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn whole_meshes() {
+    let smooth = |links| Wiring { kind: "mesh-smooth", links, settings: vec![] };
+    let fin = Mesh::new(
+        (0..5).map(|i| DVec3::new(f64::from(i), f64::from(i * i), 0.0)).collect(),
+        [[0_u32, 1, 2], [1, 0, 3], [0, 1, 4]],
+    );
+    let fin = constant("fin", wire::Mesh::new(fin.unwrap()));
+    let free = |links: Vec<_>| Wiring { settings: vec![("hold-borders", Literal::Boolean(false))], ..smooth(links) };
+    free(vec![("mesh", fin)]).blames("mesh", "more than two polygons meet");
+    let other = wire::Selection::new(Selection::by(4, |_| true), net());
+    smooth(vec![("mesh", constant("net", net())), ("selection", constant("other", other))])
+        .blames("selection", "4 weights");
+    let compare = |first, second| Wiring {
+        kind: "compare-meshes",
+        links: vec![("first", constant("a", first)), ("second", constant("b", second))],
+        settings: vec![],
+    };
+    let empty = || wire::Mesh::new(Mesh::default());
+    compare(empty(), net()).blames("first", "no polygons");
+    compare(net(), empty()).blames("second", "no polygons");
+    let same = compare(net(), net()).run().unwrap();
+    assert_eq!(same.figure("rms-edge-error").unwrap().value, 0.0);
+    let measured = Wiring { kind: "measure-mesh", links: vec![("mesh", constant("net", net()))], settings: vec![] };
+    let report = measured.run().unwrap();
+    let figure = |name: &str| report.figure(name).unwrap().value;
+    assert_eq!((figure("edges"), figure("genus"), figure("boundary-loops")), (40.0, 0.0, 1.0));
+    assert!((figure("area") - 16.0).abs() < 1e-12 && (figure("mean-edge") - 1.0).abs() < 1e-12);
 }

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::DVec3;
 use maquette_geometry::curve::Curve;
 use maquette_geometry::file_format::curves_json;
-use maquette_geometry::mesh::Mesh;
+use maquette_geometry::mesh::{Mesh, Selection};
 use maquette_geometry::sections::Sections;
 use maquette_graph::harness::{Harness, TrialError};
 use maquette_graph::{Catalogue, Literal, Vector};
@@ -175,7 +175,55 @@ fn nodes_on_meshes() {
     stops(&catalogue, "sections-from-mesh", 100, |h| {
         h.give("mesh", pillar.clone()).give("bone", wire::Curve(bone.clone())).set("count", Literal::Integer(100))
     });
+    stops(&catalogue, "measure-mesh", 6, |h| h.give("mesh", mesh.clone()));
+    stops(&catalogue, "compare-meshes", 2 * 400 * 400 / 4096, |h| {
+        h.give("first", mesh.clone()).give("second", mesh.clone())
+    });
+    stops(&catalogue, "select-by-mesh", 400 * 400 / 4096, |h| h.give("mesh", mesh.clone()).give("other", flat.clone()));
+    let lasso = wire::Curves(vec![ring("", 300, 150.0, 9.0)]);
+    stops(&catalogue, "select-by-stroke", 400 * 400 / 4096, |h| {
+        h.give("mesh", mesh.clone()).give("strokes", lasso.clone()).set("view", Literal::Choice("top".into()))
+    });
     stops(&catalogue, "mesh-out", 3 * 400 * 400 / 65_536 + 8, |h| h.give("mesh", mesh.clone()).examine());
+}
+
+#[test]
+fn nodes_that_deform_by_handles() {
+    let catalogue = maquette_nodes::catalogue().unwrap();
+    let mesh = wire::Mesh::new(net(40));
+    let near = |from: f64, to: f64| {
+        let inside = |v: usize| (from..=to).contains(&mesh.0.positions()[v].x);
+        wire::Selection::new(Selection::by(mesh.0.positions().len(), inside), mesh.clone())
+    };
+    stops(&catalogue, "change-selection", 12, |h| {
+        h.give("selection", near(0.0, 4.0)).set("steps", Literal::Integer(12))
+    });
+    stops(&catalogue, "mesh-smooth", 5, |h| h.give("mesh", mesh.clone()).set("wave", Literal::Number(8.0)));
+    let handle = Harness::new(catalogue.kind("handle").unwrap());
+    let low = handle.give("selection", near(0.0, 4.0)).run().unwrap();
+    let low = low.value::<wire::Handles>("handles").unwrap().clone();
+    let high = Harness::new(catalogue.kind("handle").unwrap())
+        .give("selection", near(36.0, 40.0))
+        .give("others", low)
+        .give("axis", Vector([0.0, 0.0, 1.0]))
+        .set("angle", Literal::Number(60.0))
+        .run()
+        .unwrap();
+    let handles = high.value::<wire::Handles>("handles").unwrap().clone();
+    stops(&catalogue, "bind-deformation", 8, |h| h.give("mesh", mesh.clone()).give("handles", handles.held()));
+    let bound = Harness::new(catalogue.kind("bind-deformation").unwrap())
+        .give("mesh", mesh.clone())
+        .give("handles", handles.held())
+        .run()
+        .unwrap();
+    let bound = bound.value::<wire::Bound>("bound").unwrap().clone();
+    stops(&catalogue, "deform", 10, |h| {
+        h.give("bound", bound.clone())
+            .give("handles", handles.clone())
+            .set("quality", Literal::Choice("converged".into()))
+            .set("tolerance", Literal::Number(0.0))
+            .set("passes", Literal::Integer(10))
+    });
 }
 
 fn fitted(count: usize) -> wire::EllipticSections {

@@ -3,12 +3,14 @@
 pub mod adjacency;
 pub mod caps;
 pub mod check;
+pub mod compare;
 pub mod crease;
 mod curvature;
 pub(crate) mod curved_side;
 pub mod cut;
 pub mod distance;
 pub(crate) mod ear_clipping;
+pub mod figures;
 pub mod geodesic;
 pub mod manifold;
 pub mod measure;
@@ -29,8 +31,10 @@ pub mod weld;
 
 pub use adjacency::Adjacency;
 pub use check::{MeshCheck, check, check_while};
+pub use compare::{Comparison, EdgeChange, Gap, compare};
 pub use curvature::mean_curvature;
 pub use distance::{MeshDistance, Nearest};
+pub use figures::{MeshFigures, figures};
 pub use manifold::ManifoldReport;
 pub use polygon::{Mesh, MeshError};
 pub use ray::{MeshRays, RayHit};

@@ -173,7 +173,7 @@ fn unit(direction: DVec3) -> Result<DVec3, StrokeError> {
 }
 
 /// How far before a stroke's points rays have to begin to be before the mesh.
-fn behind(mesh: &Mesh, stroke: &Curve) -> f64 {
+pub(super) fn behind(mesh: &Mesh, stroke: &Curve) -> f64 {
     let Some((low, high)) = measure::bounds(mesh) else { return 0.0 };
     let (from, to) = stroke.bounds();
     2.0 * (low.min(from).distance(high.max(to)) + f64::MIN_POSITIVE)

@@ -5,9 +5,13 @@ use maquette_graph::Choices;
 
 pub(crate) mod align_primitive;
 pub(crate) mod beam;
+pub(crate) mod bind_deformation;
+#[expect(clippy::module_inception, reason = "the kind is called `deform`")]
+pub(crate) mod deform;
 pub(crate) mod deform_by_cross_section;
 pub(crate) mod deform_to_curves;
 pub(crate) mod deform_to_silhouette;
+pub(crate) mod handle;
 
 /// How points of two strokes find each other.
 #[derive(Clone, Copy)]

@@ -1,6 +1,9 @@
 //! **Cut with curve**: a hole, or a piece, along a closed stroke drawn over a mesh.
 //! Reference: paper 5.2.5 (a hole to blend a limb into).
 
+use std::collections::BTreeSet;
+
+use glam::DVec3;
 use maquette_geometry::border::{Border, boundaries};
 use maquette_geometry::mesh::stroke::{self, Keep, StrokeError, cut_along};
 use maquette_graph::{AtPort, Choices, NodeKind};
@@ -49,8 +52,11 @@ pub(crate) fn kind() -> NodeKind {
             Err(error @ (StrokeError::Empty(_) | StrokeError::Mesh(_))) => Err(error).at(mesh),
             made => made.at(stroke),
         }?;
-        let before = boundaries(body).at(mesh)?;
-        let fresh = |border: &Border| before.iter().all(|old| old.curve().points() != border.curve().points());
+        // A cut elsewhere numbers vertices anew, so that an old border may start at another of its points.
+        let bits = |p: &DVec3| p.to_array().map(f64::to_bits);
+        let before: BTreeSet<_> =
+            boundaries(body).at(mesh)?.iter().flat_map(|old| old.curve().points().iter().map(bits)).collect();
+        let fresh = |border: &Border| border.curve().points().iter().any(|p| !before.contains(&bits(p)));
         let new = boundaries(&made).at(mesh)?.into_iter().filter(fresh).collect();
         ports.write(cut, wire::Mesh::new(made));
         ports.write(borders, wire::Borders(new));

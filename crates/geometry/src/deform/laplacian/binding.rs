@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use glam::{DMat3, DVec3};
 
-use super::error::{BindError, DeformError};
+use super::error::{BindError, DeformError, REGION};
 use super::handle::{HandleTransform, Holds};
 use super::implicit::Implicit;
 use super::options::{BindOptions, BindReport, DeformOptions, Deformed, Features, Handle, Passes};
@@ -75,7 +75,7 @@ impl Binding {
             found => Err(BindError::WrongSelection { what: what(), found, vertices }),
         };
         if let Some(region) = region {
-            fits(region, &|| "region".to_owned())?;
+            fits(region, &|| REGION.to_owned())?;
         }
         let mut owner = vec![usize::MAX; vertices];
         let mut contested = 0;

@@ -10,6 +10,9 @@ use crate::mesh::manifold::ManifoldReport;
 /// Edges and vertices that a message names; the error has all.
 const NAMED: usize = 4;
 
+/// What a selection is called that says what is free.
+pub(super) const REGION: &str = "region";
+
 /// Why a mesh cannot be bound to handles.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BindError {
@@ -74,6 +77,11 @@ pub enum BindError {
 }
 
 impl BindError {
+    /// Whether the region is at fault, and not a handle or the mesh.
+    pub fn is_of_region(&self) -> bool {
+        matches!(self, Self::WrongSelection { what, .. } if what == REGION)
+    }
+
     pub(super) fn not_manifold(report: &ManifoldReport, mesh: &Mesh) -> Self {
         let at = |v: u32| {
             let p = mesh.positions()[v as usize];

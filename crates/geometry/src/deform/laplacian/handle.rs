@@ -64,6 +64,17 @@ impl HandleTransform {
         Self { pivot, stretch: DMat3::IDENTITY * factor, ..Self::default() }
     }
 
+    /// From its four parts: `p` goes to `pivot + translation + rotation * stretch * (p - pivot)`, where `rotation` lies
+    /// along the axis and is as long as the angle in radians, of any size.
+    ///
+    /// # Errors
+    /// [`HandleError`] where a number is not finite or the stretch mirrors or flattens.
+    pub fn from_parts(pivot: DVec3, translation: DVec3, rotation: DVec3, stretch: DMat3) -> Result<Self, HandleError> {
+        let moved = Self { pivot, translation, rotation, stretch };
+        moved.check()?;
+        Ok(moved)
+    }
+
     /// The affine map of a matrix; its rotation is the one of at most 180 degrees.
     ///
     /// # Errors
@@ -133,8 +144,18 @@ impl HandleTransform {
         self.rotation
     }
 
+    /// The point that turning and stretching leave in place.
+    pub fn pivot(&self) -> DVec3 {
+        self.pivot
+    }
+
+    /// The shift behind it, metres.
+    pub fn translation_vector(&self) -> DVec3 {
+        self.translation
+    }
+
     /// What it does before it turns.
-    pub(super) fn stretch(&self) -> DMat3 {
+    pub fn stretch(&self) -> DMat3 {
         self.stretch
     }
 
@@ -210,6 +231,15 @@ mod tests {
         assert!(wound.apply(DVec3::ONE).distance(turned.apply(DVec3::ONE)) < 1e-14);
         let still = HandleTransform::default().wound(DVec3::Y, 2);
         assert!((still.rotation_vector().y - 4.0 * PI).abs() < 1e-14);
+    }
+
+    #[test]
+    fn its_parts_make_it_again() {
+        let turned = HandleTransform::rotation(DVec3::X, DVec3::Z, 7.0).scaled(2.0).shifted(DVec3::Y);
+        let parts = (turned.pivot(), turned.translation_vector(), turned.rotation_vector(), turned.stretch());
+        assert_eq!(HandleTransform::from_parts(parts.0, parts.1, parts.2, parts.3), Ok(turned));
+        let flat = HandleTransform::from_parts(DVec3::ZERO, DVec3::ZERO, DVec3::ZERO, DMat3::ZERO);
+        assert_eq!(flat, Err(HandleError::NotOriented));
     }
 
     #[test]

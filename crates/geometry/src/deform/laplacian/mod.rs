@@ -33,6 +33,7 @@ pub mod polar;
 mod reconstruct;
 mod repeat;
 mod rows;
+mod smooth;
 mod stencil;
 #[cfg(test)]
 mod tests;
@@ -43,3 +44,4 @@ pub use binding::Binding;
 pub use error::{BindError, DeformError};
 pub use handle::{HandleError, HandleTransform, Holds};
 pub use options::{BindOptions, BindReport, DeformOptions, Deformed, Features, Handle, Passes, Reconstruction};
+pub use smooth::{MeshSmoothError, SmoothedMesh, smooth_mesh};

@@ -116,4 +116,5 @@ mod bars;
 mod formulas;
 mod held;
 mod invariances;
+mod many;
 mod shapes;

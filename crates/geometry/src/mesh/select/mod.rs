@@ -1,14 +1,20 @@
 //! Selections: a weight for each vertex of a mesh, made from where vertices are instead of from their numbers, so that
 //! they hold when the mesh changes.
 
+mod lasso;
+mod near;
 mod selection;
 mod shape;
+mod split;
 mod surface;
 #[cfg(test)]
 mod tests;
 
+pub use lasso::by_lasso;
+pub use near::{Picked, by_points, near_mesh};
 pub use selection::{Selection, SelectionError};
 pub use shape::{Shape, by_shape};
+pub use split::{SplitError, split};
 pub use surface::{boundary_loop_nearest, by_normal, component_nearest, geodesic};
 
 /// Why nothing can be selected so.
@@ -37,6 +43,9 @@ pub enum SelectError {
     /// A mesh without polygons.
     #[error("the mesh has no polygons to select from")]
     NoPolygons,
+    /// Another mesh without polygons, to which distances are wanted.
+    #[error("the other mesh has no polygons to be near to")]
+    NoOther,
     /// A mesh without boundary.
     #[error("the mesh is closed, and has no boundary loop")]
     NoBoundary,
