@@ -22,18 +22,26 @@ const IN_THE_CUT: f64 = 1e-9;
 /// [`MeshError`] where the result has too many corners.
 pub fn cut_with_plane(mesh: &Mesh, plane: &Plane) -> Result<Mesh, MeshError> {
     let heights: Vec<f64> = mesh.positions().iter().map(|p| plane.height(*p)).collect();
-    cut(mesh, &heights, &|p| plane.height(p) > 0.0)
+    cut(mesh, &heights, Line::Within(&|p| plane.height(p) > 0.0))
 }
 
-/// The part of a mesh at whose vertices `heights` are not negative. A side whose ends are on both sides is cut where
-/// `inside` changes on the way.
-pub(crate) fn cut(mesh: &Mesh, heights: &[f64], inside: &dyn Fn(DVec3) -> bool) -> Result<Mesh, MeshError> {
+/// Where a side of a polygon is cut whose ends are on both sides.
+#[derive(Clone, Copy)]
+pub(crate) enum Line<'a> {
+    /// Where this changes on the way along the side, bent as the normals tell.
+    Within(&'a dyn Fn(DVec3) -> bool),
+    /// Where the height, linear along the straight side, is 0.
+    Level,
+}
+
+/// The part of a mesh at whose vertices `heights` are not negative, and its border along the line.
+pub(crate) fn cut(mesh: &Mesh, heights: &[f64], line: Line<'_>) -> Result<Mesh, MeshError> {
     let most = IN_THE_CUT * measure::diagonal(mesh);
     let heights: Vec<f64> = heights.iter().map(|h| if h.abs() <= most { 0.0 } else { *h }).collect();
     let mut cutter = Cutter {
         mesh,
         heights: &heights,
-        inside,
+        line,
         vertex_normals: vertex_normals(mesh),
         renumbered: vec![None; mesh.positions().len()],
         crossings: BTreeMap::new(),
@@ -71,7 +79,7 @@ enum Place {
 struct Cutter<'a> {
     mesh: &'a Mesh,
     heights: &'a [f64],
-    inside: &'a dyn Fn(DVec3) -> bool,
+    line: Line<'a>,
     vertex_normals: Vec<DVec3>,
     renumbered: Vec<Option<u32>>,
     /// New vertices by the side they cut, with the share of the way along it, the lower index first, and its direction.
@@ -158,8 +166,16 @@ impl Cutter<'_> {
             None => {
                 let [low, high] = edge.map(|v| v as usize);
                 let ends = [low, high].map(|v| self.mesh.positions()[v]);
-                let side = CurvedSide::new(ends, [low, high].map(|v| self.vertex_normals[v]));
-                let share = side.crossing(self.heights[low] > 0.0, self.inside);
+                let (side, share) = match self.line {
+                    Line::Within(inside) => {
+                        let side = CurvedSide::new(ends, [low, high].map(|v| self.vertex_normals[v]));
+                        (side, side.crossing(self.heights[low] > 0.0, inside))
+                    }
+                    Line::Level => {
+                        let heights = [low, high].map(|v| self.heights[v]);
+                        (CurvedSide::new(ends, [DVec3::ZERO; 2]), heights[0] / (heights[0] - heights[1]))
+                    }
+                };
                 let vertex = self.positions.len() as u32;
                 self.positions.push(side.at(share));
                 let found = (vertex, share, side.bent_along(share));

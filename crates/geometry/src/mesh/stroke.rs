@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
-use super::cut::cut;
+use super::cut::{Line, cut};
 use super::distance::NoPolygons;
 use super::{Mesh, MeshError, MeshRays, measure};
 use crate::curve::{ArcLength, Curve, CurveError};
@@ -165,7 +165,7 @@ pub fn cut_along(
     // The sign alone counts; where along a side the cut is, the outline tells.
     let size = measure::diagonal(mesh).max(f64::MIN_POSITIVE);
     let heights: Vec<f64> = inside.iter().map(|within| if kept(*within) { size } else { -size }).collect();
-    Ok(cut(mesh, &heights, &|p| kept(encloses(&outline, flat(p))))?)
+    Ok(cut(mesh, &heights, Line::Within(&|p| kept(encloses(&outline, flat(p)))))?)
 }
 
 fn unit(direction: DVec3) -> Result<DVec3, StrokeError> {

@@ -6,7 +6,7 @@ use crate::sections::Sections;
 use crate::view::View;
 
 /// Share of the sketch's diagonal by which sections may stand out without a warning.
-const NOTICED: f64 = 0.0005;
+pub(super) const NOTICED: f64 = 0.0005;
 
 /// What silhouettes made of a stack of sections.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,6 +46,8 @@ pub(super) struct Fits {
     views: Vec<ViewFit>,
     largest_move: f64,
     diagonal: f64,
+    /// Share of the diagonal above which a gap is warned of.
+    pub(super) gap_allowed: f64,
     /// Largest distance along the stack between where two views put a pole, metres.
     pub(super) tip_gap: f64,
 }
@@ -60,7 +62,7 @@ impl Fits {
             gap: 0.0,
             gap_after: 0,
         });
-        Self { views: views.collect(), largest_move: 0.0, diagonal, tip_gap: 0.0 }
+        Self { views: views.collect(), largest_move: 0.0, diagonal, gap_allowed: NOTICED, tip_gap: 0.0 }
     }
 
     pub(super) fn section(&mut self, index: usize, from: &[DVec3], to: &[DVec3], targets: &[[DVec2; 2]]) {
@@ -98,7 +100,7 @@ impl Fits {
                     fit.view.name()
                 ));
             }
-            if fit.gap > NOTICED * self.diagonal {
+            if fit.gap > self.gap_allowed * self.diagonal {
                 warnings.push(format!(
                     "Sections {} and {} are too far apart for the detail of the {} view's strokes, which run {:.5} m \
                      beside the line between them: space sections by detail, or give the primitive more.",

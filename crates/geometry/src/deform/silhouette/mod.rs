@@ -29,7 +29,7 @@ pub use spacing::SectionSpacing;
 pub use track::StrokeMatching;
 
 use self::columns::Columns;
-use self::deformed::Fits;
+use self::deformed::{Fits, NOTICED};
 use self::error::names;
 use self::pair::Pair;
 use self::ring::Ring;
@@ -112,7 +112,9 @@ pub fn deform_to_silhouette(
     let deformer = SilhouetteDeformer::new(sections, &views, options)?;
     let SectionSpacing::ByDetail(tolerance) = options.spacing else { return deformer.deform(silhouettes, progress) };
     let stack = deformer.by_detail(silhouettes, tolerance, &|done| progress(0.3 * done))?;
-    deformer.on(&stack)?.deform(silhouettes, &|done| progress(0.3 + 0.7 * done))
+    // What the tolerance allows is not warned of.
+    let spaced = SilhouetteDeformer { gap_allowed: tolerance.max(NOTICED), ..deformer.on(&stack)? };
+    spaced.deform(silhouettes, &|done| progress(0.3 + 0.7 * done))
 }
 
 /// A stack of sections made ready for silhouettes of given views: beams are factored and columns found once, so that
@@ -124,6 +126,7 @@ pub struct SilhouetteDeformer<'a> {
     components: Vec<Component>,
     matching: StrokeMatching,
     along: DVec3,
+    gap_allowed: f64,
 }
 
 /// A view of the stack.
@@ -219,7 +222,7 @@ impl<'a> SilhouetteDeformer<'a> {
             all = level_beside(&all, nodes);
         }
         components.push(component(along, &all)?);
-        Ok(Self { sections, views: prepared, components, matching: options.matching, along })
+        Ok(Self { sections, views: prepared, components, matching: options.matching, along, gap_allowed: NOTICED })
     }
 
     /// The same for another stack of as many points a section that stands where this one does.
@@ -229,7 +232,8 @@ impl<'a> SilhouetteDeformer<'a> {
             prepared.shares = shares(sections, prepared.view, prepared.columns, self.matching, self.along)?;
         }
         let components = self.components.clone();
-        Ok(SilhouetteDeformer { sections, views, components, matching: self.matching, along: self.along })
+        let Self { matching, along, gap_allowed, .. } = *self;
+        Ok(SilhouetteDeformer { sections, views, components, matching, along, gap_allowed })
     }
 
     /// The sections with these silhouettes, one of each view prepared for, in that order. They are as many as given,
@@ -251,6 +255,7 @@ impl<'a> SilhouetteDeformer<'a> {
         let Drawn { tracks, diagonal } = &drawn;
         let stack = self.sections;
         let mut fits = Fits::new(self.views.iter().map(|view| (view.view, view.columns)).collect(), *diagonal);
+        fits.gap_allowed = self.gap_allowed;
         fits.gaps(&self.off_chords(&drawn));
         let mut rows = Vec::with_capacity(stack.len());
         for (k, section) in stack.iter().enumerate() {

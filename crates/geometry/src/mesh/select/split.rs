@@ -1,7 +1,7 @@
 //! A mesh parted along the border of a selection.
 
 use super::{Selection, SelectionError};
-use crate::mesh::cut::cut;
+use crate::mesh::cut::{Line, cut};
 use crate::mesh::{Mesh, MeshError, measure};
 
 /// Why a mesh is not parted.
@@ -28,13 +28,9 @@ pub fn split(mesh: &Mesh, selection: &Selection) -> Result<[Mesh; 2], SplitError
     }
     // The cutter takes heights next to 0, measured by the size of the mesh, as 0; a weight of exactly 0.5 is selected.
     let size = measure::diagonal(mesh).max(f64::MIN_POSITIVE);
-    let share = |a: u32, b: u32| {
-        let (from, to) = (weights[a as usize] - 0.5, weights[b as usize] - 0.5);
-        from / (from - to)
-    };
     let part = |sign: f64| {
         let heights: Vec<f64> = weights.iter().map(|weight| sign * (weight - 0.5) * size).collect();
-        cut(mesh, &heights, &share)
+        cut(mesh, &heights, Line::Level)
     };
     Ok([part(1.0)?, part(-1.0)?])
 }
