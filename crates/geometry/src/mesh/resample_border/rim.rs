@@ -10,6 +10,9 @@ use crate::mesh::{Mesh, measure};
 /// about their places would be a bend.
 const TOO_NEAR: f64 = 0.25;
 
+/// Least sine of the angle between two sides of a ring that makes a corner.
+const CORNER: f64 = 0.35;
+
 /// Places between two points of the border at which is looked for its farthest one.
 const LOOKED_AT: usize = 4;
 
@@ -102,8 +105,19 @@ impl Rim {
         if ring.area_vector().dot(self.curve.area_vector()) < 0.0 {
             points.reverse();
         }
-        let normal = |p: &DVec3| normals.position(closest(&self.curve, *p).arc_length).normalize_or_zero();
-        let normals = points.iter().map(normal).collect();
+        let count = points.len();
+        let way = |k: usize, step: usize| {
+            let at = |ahead: usize| points[(k + ahead * step) % count];
+            (at(1) * 4.0 - at(0) * 3.0 - at(2)).normalize_or_zero()
+        };
+        let normal = |k: usize| {
+            let near = normals.position(closest(&self.curve, points[k]).arc_length).normalize_or_zero();
+            let (ahead, back) = (way(k, 1), way(k, count - 1));
+            let across = back.cross(ahead);
+            // A corner of the ring lies off the border, which has none: there the normal is that of both its sides.
+            if across.length() < CORNER { near } else { across.normalize_or_zero() * across.dot(near).signum() }
+        };
+        let normals = (0..count).map(normal).collect();
         Ok(Even { spacing: arc.length() / points.len() as f64, points, normals })
     }
 
