@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::ResampleBorderError;
+use crate::border::Border;
 use crate::curve::{ArcLength, CubicSpline, Curve, SplineLength, chord_parameters, closest};
 use crate::mesh::{Mesh, measure};
 
@@ -10,8 +11,8 @@ use crate::mesh::{Mesh, measure};
 /// about their places would be a bend.
 const TOO_NEAR: f64 = 0.25;
 
-/// Least sine of the angle between two sides of a ring that makes a corner.
-const CORNER: f64 = 0.35;
+/// Largest distance from the border, in its mean sides, of a point at which its normals count.
+const OFF: f64 = 0.02;
 
 /// Places between two points of the border at which is looked for its farthest one.
 const LOOKED_AT: usize = 4;
@@ -94,31 +95,25 @@ impl Rim {
         Ok(Even { points, normals, spacing })
     }
 
-    /// Given points along the border, run like it.
-    pub(super) fn onto(&self, ring: &Curve) -> Result<Even, ResampleBorderError> {
-        let arc = ArcLength::of(&self.curve);
-        let kept = self.spread_out();
-        let mut parameters: Vec<f64> = kept.iter().map(|k| arc.cumulative()[*k]).collect();
-        parameters.push(arc.length() + parameters[0]);
-        let normals = CubicSpline::periodic(parameters, kept.iter().map(|k| self.normals[*k]).collect())?;
-        let mut points = ring.points().to_vec();
-        if ring.area_vector().dot(self.curve.area_vector()) < 0.0 {
-            points.reverse();
-        }
-        let count = points.len();
-        let way = |k: usize, step: usize| {
-            let at = |ahead: usize| points[(k + ahead * step) % count];
-            (at(1) * 4.0 - at(0) * 3.0 - at(2)).normalize_or_zero()
-        };
+    /// Points of another border along this one, run like it.
+    pub(super) fn onto(&self, ring: &Border) -> Even {
+        let (arc, count) = (ArcLength::of(&self.curve), ring.curve().points().len());
+        let against = ring.curve().area_vector().dot(self.curve.area_vector()) < 0.0;
+        let order = |k: usize| if against { count - 1 - k } else { k };
+        let at = |k: usize| ring.curve().points()[k % count];
+        let off = OFF * arc.length() / self.vertices.len() as f64;
         let normal = |k: usize| {
-            let near = normals.position(closest(&self.curve, points[k]).arc_length).normalize_or_zero();
-            let (ahead, back) = (way(k, 1), way(k, count - 1));
-            let across = back.cross(ahead);
-            // A corner of the ring lies off the border, which has none: there the normal is that of both its sides.
-            if across.length() < CORNER { near } else { across.normalize_or_zero() * across.dot(near).signum() }
+            let near = closest(&self.curve, at(k));
+            let (segment, share) = arc.locate(near.arc_length);
+            let own =
+                self.normals[segment].lerp(self.normals[(segment + 1) % self.normals.len()], share).normalize_or_zero();
+            let other = (at(k + 1) - at(k + count - 1)).cross(ring.directions()[k]).normalize_or_zero();
+            // Where a cut took a corner off, the border does not tell what is there.
+            if near.distance <= off || other == DVec3::ZERO { own } else { other * other.dot(own).signum() }
         };
-        let normals = (0..count).map(normal).collect();
-        Ok(Even { spacing: arc.length() / points.len() as f64, points, normals })
+        let points: Vec<DVec3> = (0..count).map(|k| at(order(k))).collect();
+        let normals = (0..count).map(|k| normal(order(k))).collect();
+        Even { spacing: arc.length() / count as f64, points, normals }
     }
 
     /// The vertices without those that are next to one another.
