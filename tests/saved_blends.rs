@@ -118,18 +118,24 @@ fn a_transition_joins_an_ellipsoid_and_a_cylinder() {
     // Of the two primitives what the planes leave is as it was: the ellipsoid's top, the cylinder's round.
     let distance = MeshDistance::new(&whole).unwrap();
     assert!(distance.nearest(DVec3::new(0.0, 0.79, 0.0)).distance < 1e-9);
-    // Folds are those of facets: a crease would be far larger.
-    let fold = steepest_fold(&whole, |p| p.y > 0.1);
-    assert!(fold < 9.0, "{fold}");
-
-    // Other planes, other rings: still closed and smooth.
-    for (points, rings) in [(40, 12), (96, 24)] {
-        saved.graph.set_parameter("points", maquette_graph::Literal::Integer(points)).unwrap();
-        saved.graph.set_parameter("rings", maquette_graph::Literal::Integer(rings)).unwrap();
-        let evaluation = saved.evaluate(&mut evaluator, &targets);
-        sound("blend", mesh(&saved, &evaluation, "joined"));
-        smooth_seams(&saved, &evaluation, ["joined", ""], 2.0, 0.3);
+    // Folds are those of facets: with more of them they become less, as a crease would not.
+    let fold = |mesh: &Mesh| steepest_fold(mesh, |p| (0.28..0.56).contains(&p.y));
+    let coarse = fold(&whole);
+    assert!(coarse < 18.0, "{coarse}");
+    for (name, many) in [("points", 128), ("rings", 32)] {
+        saved.graph.set_parameter(name, maquette_graph::Literal::Integer(many)).unwrap();
     }
+    for node in ["head", "trunk"] {
+        let id = saved.node(node);
+        for input in ["sections", "nodes"] {
+            saved.graph.set(&saved.catalogue, id, input, maquette_graph::Literal::Integer(128)).unwrap();
+        }
+    }
+    let evaluation = saved.evaluate(&mut evaluator, &targets);
+    let fine = mesh(&saved, &evaluation, "joined");
+    sound("blend", fine);
+    smooth_seams(&saved, &evaluation, ["joined", ""], 2.0, 0.1);
+    assert!(fold(fine) < 0.65 * coarse, "{} {coarse}", fold(fine));
 }
 
 #[test]
@@ -143,7 +149,7 @@ fn both_arms_are_blended_into_the_trunk() {
         smooth_seams(&saved, &evaluation, [node, "joined/"], 2.0, 0.1);
         let blend = sections(&saved, &evaluation, node, "rings");
         assert!(ripple(blend).sign_changes <= 3, "{node}: {:?}", ripple(blend));
-        assert_eq!((blend.nodes(), blend.len()), (64, 10));
+        assert_eq!((blend.nodes(), blend.len()), (64, 14));
     }
     // The limb is as it was, and its ring is the blend's last.
     let arm = mesh(&saved, &evaluation, "arm with its end");
@@ -156,7 +162,7 @@ fn both_arms_are_blended_into_the_trunk() {
     // At the shoulder the surface bends over some millimetres, nowhere at once.
     let shoulder = |p: DVec3| (0.09..0.24).contains(&p.x.abs()) && (1.28..1.45).contains(&p.y);
     let fold = steepest_fold(whole, shoulder);
-    assert!(fold < 32.0, "{fold}");
+    assert!(fold < 24.0, "{fold}");
 }
 
 #[test]
@@ -236,7 +242,7 @@ fn chest_and_waist_are_drawn() {
     }
     assert!(ripple(shaped).sign_changes <= ripple(round).sign_changes + 4, "{:?} {:?}", ripple(shaped), ripple(round));
     let fold = steepest_fold(whole, |p| (0.92..1.5).contains(&p.y));
-    assert!(fold < 12.0, "{fold}");
+    assert!(fold < 20.0, "{fold}");
     // Both sides alike.
     let (low, high) = measure::bounds(whole).unwrap();
     assert!((low.x + high.x).abs() < 1e-4);

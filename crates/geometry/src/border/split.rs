@@ -3,10 +3,13 @@
 use glam::DVec3;
 
 use super::{Border, BorderError};
-use crate::curve::{CubicSpline, Curve, SplineError, SplineLength, closest, place};
+use crate::curve::{ArcLength, CubicSpline, Curve, SplineError, SplineLength, chord_parameters, closest, place};
 
-/// Points of a side nearer to the one before than this share of their mean distance carry no spline.
+/// Points of the border nearer to the one before than this share of their mean distance carry no spline.
 const TOO_NEAR: f64 = 0.25;
+
+/// Points of the border nearer to a corner than this share of their mean distance are left out.
+const BESIDE: f64 = 0.75;
 
 /// Why a border is not split.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -39,9 +42,13 @@ pub enum SplitBorderError {
     Border(#[from] BorderError),
 }
 
-/// The sides of a closed border between its points nearest to `corners`, in its order from the first corner: each `count`
-/// (2 or more) points at equal distances on a natural C2 spline through the border's, with directions square to it and to
-/// the surface's normals, which another spline goes through.
+/// The sides of a closed border between `corners`, in its order from the first corner: each `count` (2 or more) points at
+/// equal distances on a natural C2 spline through the border's points, with directions square to it and to the surface's
+/// normals, which another spline goes through.
+///
+/// A corner is where it is given, brought onto the round surface that the border's points and normals on both sides of it
+/// tell of; the border's points next to it, at which a cut takes the corner off, are left out. One that is farther than two
+/// sides of the border from it is taken for its nearest place.
 ///
 /// # Errors
 /// [`SplitBorderError`] where the border is open, or corners are too few or too near to one another.
@@ -54,63 +61,90 @@ pub fn split(border: &Border, corners: &[DVec3], count: usize) -> Result<Vec<Bor
     if corners.len() < 2 {
         return Err(E::Corners { found: corners.len() });
     }
-    let nearest = |corner: &DVec3| {
-        let at = |k: usize| curve.points()[k].distance_squared(*corner);
-        (0..curve.points().len()).fold(0, |best, k| if at(k) < at(best) { k } else { best })
-    };
-    let mut cuts: Vec<usize> = corners.iter().map(nearest).collect();
-    let first = cuts[0];
-    cuts.sort_unstable();
-    if let Some(pair) = cuts.windows(2).find(|pair| pair[0] == pair[1]) {
-        return Err(E::OnePlace { border: curve.name().to_owned(), at: curve.points()[pair[0]] });
-    }
-    let turn = cuts.iter().position(|cut| *cut == first).unwrap_or(0);
-    cuts.rotate_left(turn);
+    let arc = ArcLength::of(curve);
     let total = curve.points().len();
-    let sides = (0..cuts.len()).map(|side| {
-        let (from, to) = (cuts[side], cuts[(side + 1) % cuts.len()]);
-        let steps = (to + total - from - 1) % total + 1;
-        let places: Vec<usize> = (0..=steps).map(|k| (from + k) % total).collect();
-        one_side(border, &places, count.max(2), side)
+    let spacing = arc.length() / total as f64;
+    let mut cuts: Vec<(f64, DVec3)> = Vec::with_capacity(corners.len());
+    for corner in corners {
+        let near = closest(curve, *corner);
+        cuts.push((near.arc_length, if near.distance <= 2.0 * spacing { *corner } else { near.point }));
+    }
+    let first = cuts[0].0;
+    cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let turn = cuts.iter().position(|cut| cut.0 == first).unwrap_or(0);
+    cuts.rotate_left(turn);
+    // The border's points of each side, spread out and away from the corners.
+    let behind = |k: usize, from: f64| (arc.cumulative()[k] - from).rem_euclid(arc.length());
+    let mut sides: Vec<Vec<usize>> = Vec::with_capacity(cuts.len());
+    for (side, (from, at)) in cuts.iter().enumerate() {
+        let length = (cuts[(side + 1) % cuts.len()].0 - from).rem_euclid(arc.length());
+        let mut inner: Vec<usize> = (0..total)
+            .filter(|k| (BESIDE * spacing..=length - BESIDE * spacing).contains(&behind(*k, *from)))
+            .collect();
+        inner.sort_by(|a, b| behind(*a, *from).total_cmp(&behind(*b, *from)));
+        let mut last = f64::NEG_INFINITY;
+        inner.retain(|k| {
+            let away = behind(*k, *from) - last >= TOO_NEAR * spacing;
+            last = if away { behind(*k, *from) } else { last };
+            away
+        });
+        if inner.len() < 2 {
+            return Err(E::OnePlace { border: curve.name().to_owned(), at: *at });
+        }
+        sides.push(inner);
+    }
+    let point = |k: usize| curve.points()[k];
+    let normal = |k: usize| {
+        let along = point((k + 1) % total) - point((k + total - 1) % total);
+        along.cross(border.directions()[k]).normalize_or_zero()
+    };
+    let corners: Vec<(DVec3, DVec3)> = (0..cuts.len())
+        .map(|corner| {
+            let (before, after) = (&sides[(corner + cuts.len() - 1) % cuts.len()], &sides[corner]);
+            let beside = [[before[before.len() - 1], before[before.len() - 2]], [after[0], after[1]]];
+            round_corner(cuts[corner].1, beside.map(|two| two.map(|k| (point(k), normal(k)))))
+        })
+        .collect();
+    let made = sides.iter().enumerate().map(|(side, inner)| {
+        let ends = [corners[side], corners[(side + 1) % corners.len()]];
+        let inner = inner.iter().map(|k| (point(*k), normal(*k)));
+        let all: Vec<(DVec3, DVec3)> = [ends[0]].into_iter().chain(inner).chain([ends[1]]).collect();
+        one_side(format!("{} side {}", curve.name(), side + 1), &all, count.max(2))
     });
-    sides.collect()
+    made.collect()
 }
 
-fn one_side(border: &Border, places: &[usize], count: usize, side: usize) -> Result<Border, SplitBorderError> {
-    let at = |k: &usize| border.curve().points()[*k];
-    let lengths: Vec<f64> = places.windows(2).map(|pair| at(&pair[0]).distance(at(&pair[1]))).collect();
-    let total: f64 = lengths.iter().sum();
-    let least = TOO_NEAR * total / lengths.len() as f64;
-    let (mut kept, mut parameters, mut s) = (vec![places[0]], vec![0.0], 0.0);
-    for (place, length) in places[1..].iter().zip(&lengths) {
-        s += length;
-        if s - parameters[parameters.len() - 1] >= least && total - s >= least {
-            kept.push(*place);
-            parameters.push(s);
-        }
-    }
-    kept.push(places[places.len() - 1]);
-    parameters.push(total);
-    let line = SplineLength::of(CubicSpline::natural(parameters.clone(), kept.iter().map(at).collect())?);
-    // At a corner the border's direction halves the angle between its sides; the normal is that of both.
-    let count_all = border.curve().points().len();
-    let normal = |k: &usize| {
-        let along = at(&((k + 1) % count_all)) - at(&((k + count_all - 1) % count_all));
-        along.cross(border.directions()[*k]).normalize_or_zero()
-    };
-    let normals = CubicSpline::natural(parameters, kept.iter().map(normal).collect())?;
+/// A corner and its normal, from two points with normals on each side of it, the nearer first. The normal goes on as it
+/// changes along both sides; chords of a round surface are square to the mean of the normals at their ends.
+fn round_corner(at: DVec3, beside: [[(DVec3, DVec3); 2]; 2]) -> (DVec3, DVec3) {
+    let sum: DVec3 = beside
+        .iter()
+        .map(|[near, far]| {
+            near.1 + (near.1 - far.1) * (at.distance(near.0) / near.0.distance(far.0).max(f64::MIN_POSITIVE))
+        })
+        .sum();
+    let normal = sum.normalize_or_zero();
+    let below = |(point, other): (DVec3, DVec3)| (point - at).dot((normal + other).normalize_or_zero());
+    (at + normal * (0.5 * (below(beside[0][0]) + below(beside[1][0]))), normal)
+}
+
+fn one_side(name: String, all: &[(DVec3, DVec3)], count: usize) -> Result<Border, SplitBorderError> {
+    let (points, normals): (Vec<DVec3>, Vec<DVec3>) = all.iter().copied().unzip();
+    let parameters = chord_parameters(&points, false);
+    let (start, end) = (points[0], points[points.len() - 1]);
+    let line = SplineLength::of(CubicSpline::natural(parameters.clone(), points)?);
+    let normals = CubicSpline::natural(parameters, normals)?;
     let stations: Vec<f64> = (0..count).map(|k| line.length() * k as f64 / (count - 1) as f64).collect();
     let mut points: Vec<DVec3> = stations.iter().map(|s| line.point_at(*s)).collect();
     // The sides meet to the bit.
-    (points[0], points[count - 1]) = (at(&places[0]), at(&places[places.len() - 1]));
+    (points[0], points[count - 1]) = (start, end);
     let leading = stations.iter().map(|s| {
         let t = line.parameter_at(*s);
         normals.position(t).cross(line.spline().derivative(t))
     });
     let leading = leading.collect();
-    let name = format!("{} side {}", border.curve().name(), side + 1);
-    let none = |_| BorderError::Count { border: name.clone(), points: points.len(), found: 0 };
-    let curve = Curve::new(name.clone(), points.clone(), false).map_err(none)?;
+    let none = |_| BorderError::Count { border: name.clone(), points: count, found: 0 };
+    let curve = Curve::new(name.clone(), points, false).map_err(none)?;
     Ok(Border::new(curve, leading)?)
 }
 
@@ -122,7 +156,7 @@ pub fn farthest_corner(border: &Border, corners: &[DVec3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::curve::ArcLength;
+    use std::f64::consts::TAU;
 
     /// A square hole of side 2 about the origin in XZ, ten points a side; at corners the directions are diagonal.
     fn square() -> Border {
@@ -135,10 +169,11 @@ mod tests {
 
     #[test]
     fn a_square_has_four_sides_from_the_first_corner_on() {
-        let corners = [(-1.1, 0.9), (1.0, 1.2), (1.0, -1.0), (-0.9, -1.0)].map(|(x, z)| DVec3::new(x, 0.1, z));
+        let corners = [(-1.0, 1.0), (1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)].map(|(x, z)| DVec3::new(x, 0.1, z));
         let sides = split(&square(), &corners, 33).unwrap();
         assert_eq!(sides.len(), 4);
-        assert_eq!(sides[0].curve().points()[0], DVec3::new(-1.0, 0.0, 1.0));
+        // The corner is brought down onto the plane of the square.
+        assert!(sides[0].curve().points()[0].distance(DVec3::new(-1.0, 0.0, 1.0)) < 1e-12);
         for (k, side) in sides.iter().enumerate() {
             assert_eq!(side.curve().end(), sides[(k + 1) % 4].curve().start());
             assert!((ArcLength::of(side.curve()).length() - 2.0).abs() < 1e-12 && side.curve().points().len() == 33);
@@ -149,7 +184,25 @@ mod tests {
                 side.directions()
             );
         }
-        assert!((0.1..0.25).contains(&farthest_corner(&square(), &corners)));
+        assert!((farthest_corner(&square(), &corners) - 0.1).abs() < 1e-12);
+        // On a sphere as well, where the corners given are on its facets.
+        let at = |k: u32| TAU * f64::from(k) / 80.0;
+        let place = |t: f64, size: f64| {
+            let (x, z) = (0.4 * t.cos().abs().sqrt() * t.cos().signum(), 0.4 * t.sin().abs().sqrt() * t.sin().signum());
+            DVec3::new(size * x, 0.0, size * z)
+        };
+        let on = |p: DVec3| p.with_y((1.0 - p.length_squared()).sqrt());
+        let ring: Vec<DVec3> = (0..80).map(at).map(|t| on(place(t, 1.0))).collect();
+        let inwards = |k: usize| ring[k].cross(ring[(k + 1) % 80] - ring[(k + 79) % 80]);
+        let hole =
+            Border::new(Curve::new("hole", ring.clone(), true).unwrap(), (0..80).map(inwards).collect()).unwrap();
+        let corners: Vec<DVec3> =
+            (0..4).map(|k| on(place(TAU * (0.125 + 0.25 * f64::from(k)), 1.01)) * 0.999).collect();
+        for side in split(&hole, &corners, 65).unwrap() {
+            for (p, d) in side.curve().points().iter().zip(side.directions()) {
+                assert!((p.length() - 1.0).abs() < 2e-5 && p.dot(*d).abs() < 2e-3, "{p} {} {}", p.length(), p.dot(*d));
+            }
+        }
     }
 
     #[test]

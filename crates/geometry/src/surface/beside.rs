@@ -3,6 +3,8 @@
 use glam::DVec3;
 
 use super::grid::unit_normal;
+use super::spline::{End, Ends, SlopeSystem};
+use crate::curve::chord_parameters;
 use crate::sections::Sections;
 
 /// What a skin continues smoothly: directions in the tangent planes of the surfaces beside it, across its borders, of
@@ -34,10 +36,38 @@ pub(super) fn leaving(points: [DVec3; 3], h: [f64; 2]) -> DVec3 {
     first + (first - second) * (h[0] / (h[0] + h[1]))
 }
 
-/// The slope turned into the plane of the border's tangent and a direction of the neighbour.
-pub(super) fn turned_into(slope: DVec3, tangent: DVec3, direction: DVec3) -> DVec3 {
-    let normal = unit_normal(tangent, direction);
+/// The slope turned into the plane across a normal.
+pub(super) fn turned_into(slope: DVec3, normal: DVec3) -> DVec3 {
     slope - normal * normal.dot(slope)
+}
+
+/// Tangents of the spline through the points of one edge, its knots at the length of its own chords: those that a whole
+/// skin shares are off it. None where points coincide.
+fn tangents(points: &[DVec3], closed: bool) -> Option<Vec<DVec3>> {
+    let lengths = chord_parameters(points, closed);
+    let intervals: Vec<f64> = lengths.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    if points.len() < 3 || intervals.iter().any(|interval| *interval <= 0.0) {
+        return None;
+    }
+    let mut slopes = vec![DVec3::ZERO; points.len()];
+    let ends = if closed {
+        Ends::Periodic
+    } else {
+        let (last, behind) = (points.len() - 1, intervals.len() - 1);
+        slopes[0] = leaving([points[0], points[1], points[2]], [intervals[0], intervals[1]]);
+        let back =
+            leaving([points[last], points[last - 1], points[last - 2]], [intervals[behind], intervals[behind - 1]]);
+        slopes[last] = -back;
+        Ends::Open { start: End::Slope, end: End::Slope }
+    };
+    SlopeSystem::new(intervals, ends).solve(points, &mut slopes, 1);
+    Some(slopes)
+}
+
+/// Unit normals of the neighbour at the points of an edge, on either side; zero where it has none.
+pub(super) fn normals(points: &[DVec3], closed: bool, directions: &[DVec3]) -> Vec<DVec3> {
+    let tangents = tangents(points, closed).unwrap_or_else(|| vec![DVec3::ZERO; points.len()]);
+    tangents.iter().zip(directions).map(|(tangent, direction)| unit_normal(*tangent, *direction)).collect()
 }
 
 #[cfg(test)]

@@ -112,40 +112,42 @@ pub(crate) fn sample(
     asked(0.0)?;
     let knots = knots::across(sections, options.parameter, poles);
     let across = SlopeSystem::new(knots.clone(), if closed { Ends::Periodic } else { open([false; 2]) });
-    let leaving = beside.ends.iter().zip(tipped).map(|(end, tip)| end.is_some() && !tip);
-    let leaving: Vec<bool> = leaving.collect();
-    if leaving.contains(&true) {
-        let mut tangents = vec![DVec3::ZERO; nodes];
-        for (end, directions) in beside.ends.iter().enumerate().filter(|(end, _)| leaving[*end] && count > 2) {
+    let end_normals = [0, 1].map(|end| {
+        let directions = beside.ends[end].filter(|_| !tipped[end] && count > 2)?;
+        Some(beside::normals(sections.section(end * (count - 1)), closed, directions))
+    });
+    if end_normals.iter().any(Option::is_some) {
+        for (end, normals) in end_normals.iter().enumerate() {
             let row = |k: usize| if end == 0 { k } else { count - 1 - k };
-            across.solve(sections.section(row(0)), &mut tangents, 1);
-            let gaps = [0, 1].map(|k| system.intervals()[if end == 0 { k } else { count - 2 - k }]);
-            for (j, direction) in directions.unwrap_or_default().iter().enumerate() {
+            let gaps = [0, 1].map(|k| if count > 2 { system.intervals()[row(k).min(row(k + 1))] } else { 1.0 });
+            for (j, normal) in normals.iter().flatten().enumerate() {
                 let slope = beside::leaving([0, 1, 2].map(|k| points[row(k) * nodes + j]), gaps);
                 let slope = if end == 0 { slope } else { -slope };
-                slopes[row(0) * nodes + j] = beside::turned_into(slope, tangents[j], *direction);
+                slopes[row(0) * nodes + j] = beside::turned_into(slope, *normal);
             }
         }
-        let fixed = [0, 1].map(|end| tipped[end] || (leaving[end] && count > 2));
+        let fixed = [0, 1].map(|end| tipped[end] || end_normals[end].is_some());
         system = SlopeSystem::new(system.intervals().to_vec(), open(fixed));
         system.solve(points, &mut slopes, nodes);
     }
-    let sides = beside.sides.map(|side| side.filter(|_| !closed && nodes > 2));
-    let point = if sides == [None; 2] {
+    let side_normals = [0, 1].map(|side| {
+        let directions = beside.sides[side].filter(|_| !closed && nodes > 2)?;
+        let edge: Vec<DVec3> = sections.iter().map(|section| section[side * (nodes - 1)]).collect();
+        Some(beside::normals(&edge, false, directions))
+    });
+    let point = if side_normals.iter().all(Option::is_none) {
         spread(points, &across, nodes, options.columns, [&[], &[]])
     } else {
-        let slopes_at = sides.iter().enumerate().map(|(side, directions)| -> Vec<DVec3> {
+        let slopes_at = [0, 1].map(|side| -> Vec<DVec3> {
             let column = |k: usize| if side == 0 { k } else { nodes - 1 - k };
-            let gaps = [0, 1].map(|k| knots[if side == 0 { k } else { nodes - 2 - k }]);
-            let turned = |(row, direction): (usize, &DVec3)| {
+            let gaps = [0, 1].map(|k| knots[column(k).min(column(k + 1))]);
+            let turned = |(row, normal): (usize, &DVec3)| {
                 let slope = beside::leaving([0, 1, 2].map(|k| points[row * nodes + column(k)]), gaps);
-                let slope = if side == 0 { slope } else { -slope };
-                beside::turned_into(slope, slopes[row * nodes + column(0)], *direction)
+                beside::turned_into(if side == 0 { slope } else { -slope }, *normal)
             };
-            directions.unwrap_or_default().iter().enumerate().map(turned).collect()
+            side_normals[side].iter().flatten().enumerate().map(turned).collect()
         });
-        let slopes_at: Vec<Vec<DVec3>> = slopes_at.collect();
-        let leaving = SlopeSystem::new(knots, open(sides.map(|side| side.is_some())));
+        let leaving = SlopeSystem::new(knots, open([0, 1].map(|side| side_normals[side].is_some())));
         spread(points, &leaving, nodes, options.columns, [&slopes_at[0], &slopes_at[1]])
     };
     asked(0.05)?;
@@ -190,6 +192,23 @@ pub(crate) fn sample(
         }));
     }
     starts.push(positions.len());
+    // Shared knots leave the tangents along an edge a little off it, and with them the normals computed above.
+    let mut given = |vertex: usize, normal: DVec3| {
+        if normal != DVec3::ZERO && normals[vertex] != DVec3::ZERO {
+            normals[vertex] = normal * normal.dot(normals[vertex]).signum();
+        }
+    };
+    let section_starts = |section: usize| starts[section * options.rows];
+    for (side, edge) in side_normals.iter().enumerate() {
+        for (section, normal) in edge.iter().flatten().enumerate().filter(|(section, _)| !poles[*section]) {
+            given(section_starts(section) + side * (columns - 1), *normal);
+        }
+    }
+    for (end, edge) in end_normals.iter().enumerate().filter(|(end, _)| !poles[*end * (count - 1)]) {
+        for (j, normal) in edge.iter().flatten().enumerate() {
+            given(section_starts(end * (count - 1)) + j * options.columns, *normal);
+        }
+    }
     let across = shares_across(&point.value, columns, cells);
     let mut grid = Grid { positions, normals, starts, columns, cells, across, along: Vec::new(), creases: Vec::new() };
     grid.along = shares_along(&grid, options.columns);

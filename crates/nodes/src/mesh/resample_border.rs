@@ -93,7 +93,7 @@ pub(crate) fn kind() -> NodeKind {
         };
         let progress = ports.progress_callback();
         let made = match wanted {
-            Some(wanted) => resample_border_onto(body, rim, wanted.curve(), &progress),
+            Some(wanted) => resample_border_onto(body, rim, wanted, &progress),
             None => resample_border(body, rim, &options, &progress),
         };
         let made = match made {

@@ -15,7 +15,8 @@ use glam::{DVec2, DVec3};
 use super::distance::{MeshDistance, NoPolygons, nearest_on_triangle};
 use super::triangulate::polygon_triangles;
 use super::{Mesh, MeshError};
-use crate::curve::{Curve, SplineError, closest, place};
+use crate::border::Border;
+use crate::curve::{SplineError, closest, place};
 use collar::Collar;
 use rim::Rim;
 
@@ -159,15 +160,16 @@ pub fn resample_border(
     replaced(mesh, &rim, &even, progress)
 }
 
-/// Gives the border `vertices` the points of another closed curve that lies along it, in their order or, where that
-/// curve runs the other way, against it: those of a surface that was made between its sides.
+/// Gives the border `vertices` the points of another closed one that lies along it, in their order or, where that runs the
+/// other way, against it: those of a surface that was made between its sides. Normals are those of the mesh; where a cut
+/// took off a corner that the other border has, they are those of the other surface.
 ///
 /// # Errors
 /// As [`resample_border`]; also where the curve is open or leaves the border by more than a tenth of its size.
 pub fn resample_border_onto(
     mesh: &Mesh,
     vertices: &[u32],
-    ring: &Curve,
+    ring: &Border,
     progress: &dyn Fn(f64) -> bool,
 ) -> Result<ResampledBorder, ResampleBorderError> {
     use ResampleBorderError as E;
@@ -175,6 +177,7 @@ pub fn resample_border_onto(
         return Err(E::Stopped);
     }
     let rim = Rim::of(mesh, vertices).ok_or(E::NoBorder)?;
+    let (ring, beside) = (ring.curve(), ring);
     let (low, high) = rim.curve.bounds();
     let far = |p: &&DVec3| closest(&rim.curve, **p).distance > AWAY * low.distance(high);
     if !ring.is_closed() {
@@ -183,8 +186,7 @@ pub fn resample_border_onto(
     if let Some(at) = ring.points().iter().find(far) {
         return Err(E::Away { ring: ring.name().to_owned(), at: *at });
     }
-    let even = rim.onto(ring)?;
-    replaced(mesh, &rim, &even, progress)
+    replaced(mesh, &rim, &rim.onto(beside), progress)
 }
 
 /// The mesh with other faces along a border.

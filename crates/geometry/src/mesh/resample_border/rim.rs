@@ -3,12 +3,16 @@
 use glam::DVec3;
 
 use super::ResampleBorderError;
+use crate::border::Border;
 use crate::curve::{ArcLength, CubicSpline, Curve, SplineLength, chord_parameters, closest};
 use crate::mesh::{Mesh, measure};
 
 /// Vertices of a border nearer to the one before than this share of the mean distance carry no spline: what is uncertain
 /// about their places would be a bend.
 const TOO_NEAR: f64 = 0.25;
+
+/// Largest distance from the border, in its mean sides, of a point at which its normals count.
+const OFF: f64 = 0.02;
 
 /// Places between two points of the border at which is looked for its farthest one.
 const LOOKED_AT: usize = 4;
@@ -91,20 +95,25 @@ impl Rim {
         Ok(Even { points, normals, spacing })
     }
 
-    /// Given points along the border, run like it.
-    pub(super) fn onto(&self, ring: &Curve) -> Result<Even, ResampleBorderError> {
-        let arc = ArcLength::of(&self.curve);
-        let kept = self.spread_out();
-        let mut parameters: Vec<f64> = kept.iter().map(|k| arc.cumulative()[*k]).collect();
-        parameters.push(arc.length() + parameters[0]);
-        let normals = CubicSpline::periodic(parameters, kept.iter().map(|k| self.normals[*k]).collect())?;
-        let mut points = ring.points().to_vec();
-        if ring.area_vector().dot(self.curve.area_vector()) < 0.0 {
-            points.reverse();
-        }
-        let normal = |p: &DVec3| normals.position(closest(&self.curve, *p).arc_length).normalize_or_zero();
-        let normals = points.iter().map(normal).collect();
-        Ok(Even { spacing: arc.length() / points.len() as f64, points, normals })
+    /// Points of another border along this one, run like it.
+    pub(super) fn onto(&self, ring: &Border) -> Even {
+        let (arc, count) = (ArcLength::of(&self.curve), ring.curve().points().len());
+        let against = ring.curve().area_vector().dot(self.curve.area_vector()) < 0.0;
+        let order = |k: usize| if against { count - 1 - k } else { k };
+        let at = |k: usize| ring.curve().points()[k % count];
+        let off = OFF * arc.length() / self.vertices.len() as f64;
+        let normal = |k: usize| {
+            let near = closest(&self.curve, at(k));
+            let (segment, share) = arc.locate(near.arc_length);
+            let own =
+                self.normals[segment].lerp(self.normals[(segment + 1) % self.normals.len()], share).normalize_or_zero();
+            let other = (at(k + 1) - at(k + count - 1)).cross(ring.directions()[k]).normalize_or_zero();
+            // Where a cut took a corner off, the border does not tell what is there.
+            if near.distance <= off || other == DVec3::ZERO { own } else { other * other.dot(own).signum() }
+        };
+        let points: Vec<DVec3> = (0..count).map(|k| at(order(k))).collect();
+        let normals = (0..count).map(|k| normal(order(k))).collect();
+        Even { spacing: arc.length() / count as f64, points, normals }
     }
 
     /// The vertices without those that are next to one another.

@@ -1,5 +1,6 @@
 use super::*;
 use crate::border::{boundaries, boundary_along};
+use crate::curve::Curve;
 use crate::mesh::slice::Plane;
 use crate::mesh::stroke::{Keep, cut_along};
 use crate::mesh::weld::{WeldOptions, weld};
@@ -106,15 +107,18 @@ fn a_border_takes_the_points_of_another_and_both_are_welded() {
     let points: Vec<DVec3> = (0..72).map(at).map(on).map(|p| p.with_y((1.0 - p.length_squared()).sqrt())).collect();
     let lid = Mesh::new(points.clone(), [(0..72).collect::<Vec<u32>>()]).unwrap();
     let rim = Topology::new(&mesh).boundary_loops().remove(0);
-    let ring = Curve::new("lid", points.clone(), true).unwrap();
-    for ring in [ring.clone(), ring.reversed()] {
+    let border = |points: Vec<DVec3>| {
+        let outwards = points.iter().map(|p| DVec3::new(p.x, -0.1, p.z)).collect();
+        Border::new(Curve::new("lid", points, true).unwrap(), outwards).unwrap()
+    };
+    for ring in [border(points.clone()), border(points.iter().rev().copied().collect())] {
         let made = resample_border_onto(&mesh, &rim, &ring, &|_| true).unwrap();
         let welded = weld(&[&made.mesh, &lid], &WeldOptions { tolerance: 0.0, smooth_degrees: 30.0 }).unwrap();
         let found = check(&welded.mesh);
         assert!(found.is_sound() && found.closed && found.shells == 1, "{found}");
         assert!(welded.seams[0].whole && welded.seams[0].largest_gap == 0.0);
     }
-    let far = Curve::new("far", points.iter().map(|p| *p * 1.3).collect(), true).unwrap();
+    let far = border(points.iter().map(|p| *p * 1.3).collect());
     let refused = resample_border_onto(&mesh, &rim, &far, &|_| true).unwrap_err();
     assert!(matches!(refused, ResampleBorderError::Away { .. }), "{refused}");
 }
