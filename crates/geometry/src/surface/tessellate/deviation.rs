@@ -28,8 +28,12 @@ const STEPS: usize = 4;
 const AHEAD: usize = 8;
 
 /// A point is passed over where a bound of its squared distance is below this share of one that was found: less than 1,
-/// so that rounding never decides.
+/// so that rounding does not decide.
 const BELOW: f64 = 0.999;
+
+/// Nor is a point passed over where distances are below this share of the coordinates, which is some 10^5 times what
+/// rounding makes of them.
+const NOISE: f64 = 1e-11;
 
 /// Measures the distance from points of the exact surface to the quad they belong to: every quad has a net of 5 by 5,
 /// its corners among them. It is an upper bound of their distance to the mesh. Each point counts with the worse of both
@@ -130,12 +134,15 @@ struct Quad {
     /// `a - b + c - d`: how far the quad is from a parallelogram. The bilinear patch is off either split by at most a
     /// quarter of it.
     twist: DVec3,
+    /// Squared distances below which nothing is passed over.
+    noise: f64,
 }
 
 impl Quad {
     fn new(corners: [DVec3; 4]) -> Self {
         let [a, b, c, d] = corners;
-        Self { corners, twist: a - b + c - d }
+        let size = corners.iter().fold(0.0, |size: f64, corner| size.max(corner.abs().max_element()));
+        Self { corners, twist: a - b + c - d, noise: (NOISE * size).powi(2) }
     }
 
     /// Square of the distance of a point, by the worse of both ways to split the quad.
@@ -154,7 +161,7 @@ impl Quad {
         let aside = self.aside(point, steps);
         let split = (aside - self.twist * (s.min(t) * (1.0 - s.max(t)))).length_squared();
         let other = (aside + self.twist * (s * t).min((1.0 - s) * (1.0 - t))).length_squared();
-        let is_near = split.max(other) < BELOW * least;
+        let is_near = least > self.noise && split.max(other) < BELOW * least;
         (!is_near).then(|| self.distance_squared(point))
     }
 
@@ -169,7 +176,7 @@ impl Quad {
     /// Points whose squared distance from the bilinear patch is below this are nearer than `least` whatever the split.
     fn near(&self, least: f64) -> f64 {
         let left = (BELOW * least).sqrt() - 0.25 * self.twist.length();
-        if left > 0.0 { left * left } else { 0.0 }
+        if left > 0.0 && least > self.noise { left * left } else { 0.0 }
     }
 }
 
@@ -262,6 +269,7 @@ mod tests {
             for k in 0..=STEPS {
                 for off in [DVec3::ZERO, DVec3::new(0.02, -0.01, 0.3), DVec3::new(-0.2, 0.1, -0.05)] {
                     let place = -quad.aside(DVec3::ZERO, [i, k]);
+                    // At the corners, zero but for rounding.
                     let (point, distance) = (place + off, quad.distance_squared(place + off));
                     // What may be passed over at some least distance is nearer than that.
                     for least in [0.25, 0.5, 0.9, 1.0].map(|share| share * distance) {
