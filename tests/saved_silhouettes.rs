@@ -109,7 +109,7 @@ fn the_leg_is_deformed_again_to_free_form_curves() {
     for curve in curves {
         // Every point of the curve is on the surface, to what a mesh of it leaves; it was well off it.
         let mesh = &evaluation.value::<wire::Mesh>(saved.node("fit"), "mesh").unwrap().0;
-        let surface = maquette_geometry::mesh::distance::MeshDistance::new(mesh).unwrap();
+        let surface = maquette_geometry::mesh::MeshDistance::new(mesh).unwrap();
         let off = curve.points().iter().map(|p| surface.nearest(*p).distance).fold(0.0, f64::max);
         assert!(off < 1e-3, "{}: {off}", curve.name());
         passed += 1;
