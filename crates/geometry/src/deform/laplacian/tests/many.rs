@@ -111,8 +111,7 @@ fn a_small_region_of_a_large_mesh_is_bound_alone() {
     let region = select(&large, |p| p.distance(DVec3::new(0.5, 0.0, 0.5)) < 0.05);
     let handle = select(&large, |p| p.distance(DVec3::new(0.5, 0.0, 0.5)) < 0.01);
     let options = BindOptions::default();
-    let bound =
-        Binding::new(Arc::new(large.clone()), Some(&region), &both([&handle]), &options, &|_| true).unwrap();
+    let bound = Binding::new(Arc::new(large.clone()), Some(&region), &both([&handle]), &options, &|_| true).unwrap();
     let free = region.vertices().len() - handle.vertices().len();
     assert_eq!(bound.report().free, free);
     assert!(free < 800 && bound.report().factor_bytes < 4_000_000, "{:?}", bound.report());
