@@ -49,8 +49,9 @@ fn a_bar_bent_by_120_degrees_keeps_volume_and_edges() {
     assert!(of("figures", "volume-ratio") >= 0.90, "{}", of("figures", "volume-ratio"));
     assert!(of("figures", "rms-edge-error") <= 0.105, "{}", of("figures", "rms-edge-error"));
     // Without the second system the bar shears and thins.
-    assert!(of("figures while dragging", "volume-ratio") < 0.7 * of("figures", "volume-ratio"));
-    assert_eq!((of("bound", "free"), of("bound", "handles")), (1344.0, 2.0));
+    assert!(of("figures while dragging", "volume-ratio") < 0.8 * of("figures", "volume-ratio"));
+    assert!(of("figures while dragging", "rms-edge-error") > 1.5 * of("figures", "rms-edge-error"));
+    assert_eq!((of("bound", "free"), of("bound", "handles")), (2928.0, 2.0));
     // The upper end looks where an arc of 120 degrees leads.
     let (bar, bent) = (mesh(&saved, &evaluation, "bar", "mesh"), mesh(&saved, &evaluation, "bent", "mesh"));
     let top = bar.positions().iter().zip(bent.positions()).filter(|(p, _)| p.y > 0.599);
@@ -64,12 +65,12 @@ fn a_bar_bent_by_120_degrees_keeps_volume_and_edges() {
 #[test]
 fn a_bar_twisted_by_400_degrees_winds() {
     let saved = Saved::load("bar-twisted");
-    let evaluation = saved.evaluate(&mut Evaluator::default(), &["bar twisted", "twisted", "figures", "bar"]);
-    let (bar, twisted) = (mesh(&saved, &evaluation, "bar", "mesh"), mesh(&saved, &evaluation, "twisted", "mesh"));
+    let evaluation = saved.evaluate(&mut Evaluator::default(), &["bar twisted", "twisted", "figures", "long bar"]);
+    let (bar, twisted) = (mesh(&saved, &evaluation, "long bar", "mesh"), mesh(&saved, &evaluation, "twisted", "mesh"));
     // The angle around the axis, followed from level to level along one edge of the bar.
     let (mut angle, mut last) = (0.0, DVec3::ZERO);
-    for level in 0..=48 {
-        let at = DVec3::new(0.05, 0.0125 * f64::from(level), 0.05);
+    for level in 0..=72 {
+        let at = DVec3::new(0.05, 0.8 / 72.0 * f64::from(level), 0.05);
         let vertex = bar.positions().iter().position(|p| p.distance(at) < 1e-5).unwrap();
         let now = twisted.positions()[vertex].with_y(0.0);
         angle += if level == 0 { 0.0 } else { last.cross(now).y.atan2(last.dot(now)) };
@@ -78,7 +79,7 @@ fn a_bar_twisted_by_400_degrees_winds() {
     assert!((angle.to_degrees() - 400.0).abs() < 1e-6, "{}", angle.to_degrees());
     let volume = figure(&saved, &evaluation, "figures", "volume-ratio");
     let edges = figure(&saved, &evaluation, "figures", "rms-edge-error");
-    assert!(volume > 0.6 && edges < 0.16, "{volume}, {edges}");
+    assert!(volume > 0.55 && edges < 0.085, "{volume}, {edges}");
 }
 
 #[test]
@@ -108,7 +109,7 @@ fn four_fingers_bend_and_the_palm_stays() {
     assert!(rest.clone().count() > 300 && rest.clone().all(|((p, q), _)| p == q), "the palm stays");
     let volume = figure(&saved, &evaluation, "figures", "volume-ratio");
     let edges = figure(&saved, &evaluation, "figures", "rms-edge-error");
-    assert!((volume - 1.0).abs() < 0.03 && edges < 0.1, "{volume}, {edges}");
+    assert!((volume - 1.0).abs() < 0.03 && edges < 0.06, "{volume}, {edges}");
 }
 
 #[test]
@@ -134,7 +135,7 @@ fn a_body_raises_an_arm_bends_a_knee_and_turns_its_head() {
     assert!(measure::signed_volume(posed) > 0.0);
     let volume = figure(&saved, &evaluation, "figures", "volume-ratio");
     let edges = figure(&saved, &evaluation, "figures", "rms-edge-error");
-    assert!((volume - 1.0).abs() < 0.02 && edges < 0.08, "{volume}, {edges}");
+    assert!((volume - 1.0).abs() < 0.01 && edges < 0.045, "{volume}, {edges}");
 }
 
 fn ran(saved: &Saved, evaluator: &mut Evaluator) -> Vec<String> {
@@ -161,6 +162,6 @@ fn dragging_a_handle_only_solves() {
     assert_eq!(ran(&saved, &mut evaluator), behind);
     // Another vertex in a handle binds again.
     let calf = saved.node("calf and foot");
-    saved.graph.set(calf, "size", Literal::Vector([0.27, 0.46, 0.5])).unwrap();
+    saved.graph.set(calf, "size", Literal::Vector([0.27, 0.5, 0.5])).unwrap();
     assert!(ran(&saved, &mut evaluator).contains(&"bound".to_owned()));
 }

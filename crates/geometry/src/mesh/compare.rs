@@ -147,7 +147,8 @@ mod tests {
     #[test]
     fn other_polygons_have_no_edges_in_common() {
         let whole = net(0.0, 1.0);
-        let fewer: Vec<&[u32]> = whole.polygons().skip(1).collect();
+        // One in the middle, so that all vertices stay in use.
+        let fewer: Vec<&[u32]> = whole.polygons().enumerate().filter(|(i, _)| *i != 5).map(|(_, p)| p).collect();
         let fewer = Mesh::new(whole.positions().to_vec(), fewer).unwrap();
         let found = compare(&fewer, &whole, &|_| true).unwrap().unwrap();
         assert_eq!((found.edges, found.largest_move), (None, None));

@@ -237,6 +237,18 @@ fn shrinking_too_much_is_told() {
 }
 
 #[test]
+fn a_gap_that_the_tolerance_allows_is_not_warned_of() {
+    let wavy = pair(View::FRONT, |t| 0.3 + 0.03 * (20.0 * t).sin(), |_| -0.3);
+    let start = stack(3, 32, |_| 0.3);
+    let made = |spacing| apply(&start, &[(View::FRONT, &wavy)], &SilhouetteOptions { spacing, ..height() });
+    let fine = made(SectionSpacing::ByDetail(1e-4));
+    let coarse = made(SectionSpacing::ByDetail(5e-3));
+    assert!(coarse.views[0].gap > 1e-3 && coarse.views[0].gap > 4.0 * fine.views[0].gap, "{:?}", coarse.views);
+    assert_eq!((fine.warnings, coarse.warnings), (vec![], vec![]));
+    assert_eq!(made(SectionSpacing::AsGiven).warnings.len(), 1);
+}
+
+#[test]
 fn sections_by_detail_stand_at_corners_and_keep_those_given() {
     // A stroke of straight pieces with two corners, one on each side, at heights where no section is given.
     let corner = |at: f64, out: f64| move |t: f64| 0.4 + out * (1.0 - (t - at).abs() / at.max(1.0 - at));

@@ -58,7 +58,7 @@ fn a_surface_of_genus_five_bends() {
         let after = figures(&made, &|_| true).unwrap();
         assert!(ManifoldReport::of(&made).is_manifold() && after.genus == Some(5));
         let (ratio, error) = (after.volume / found.volume, edge_error(&plate, &made));
-        assert!(ratio > 0.9 && error < 0.12, "{reconstruction:?}: {ratio:.3}, {error:.3}");
+        assert!(ratio > 0.86 && error < 0.1, "{reconstruction:?}: {ratio:.3}, {error:.3}");
         let rigid = deform(&bound, &[turn; 2], Passes::Once).mesh;
         let wanted = plate.with_positions(plate.positions().iter().map(|p| turn.apply(*p)).collect(), None).unwrap();
         assert!(apart(&wanted, rigid.positions()) < 1e-9);
