@@ -6,7 +6,7 @@ use std::hint::black_box;
 use std::path::Path;
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
-use maquette_graph::{Evaluator, EvaluatorOptions, Graph, Literal, NodeId, Request, Source, file};
+use maquette_graph::{Edit, Evaluator, EvaluatorOptions, Graph, Literal, NodeId, Request, Source, file};
 
 struct Saved {
     catalogue: maquette_graph::Catalogue,
@@ -43,7 +43,7 @@ fn evaluator() -> Evaluator {
 }
 
 fn graphs(c: &mut Criterion) {
-    for name in ["vest", "head", "neck", "leg", "forearm", "hip", "human"] {
+    for name in ["vest", "head", "neck", "leg", "forearm", "hip", "human", "warrior"] {
         let saved = load(name);
         let results = saved.graph.results();
         c.bench_function(&format!("{name}, cold"), |b| {
@@ -120,6 +120,34 @@ fn human_changes(c: &mut Criterion) {
     });
 }
 
+/// Strokes of the warrior moved, each within its group: of what he wears, of his trunk and of his head.
+fn warrior_changes(c: &mut Criterion) {
+    for (group, sketch, result) in [
+        ("vest", "chest", "vest plate"),
+        ("kilt", "lower edge", "kilt cloth"),
+        ("boots", "shaft from the side", "boot leather"),
+        ("body", "trunk from the front", "skin"),
+        ("head", "head from the side", "skin"),
+    ] {
+        let what = format!("warrior, a stroke of the {group} moved (mark: 16 ms)");
+        changing(c, &what, load("warrior"), result, |saved, step| {
+            let node = saved.node(group);
+            let body = saved.graph.node(node).and_then(|node| node.body()).and_then(|body| body.graph());
+            let inner = body.and_then(|body| body.find(sketch).map(|id| (body, id)));
+            let (body, id) = inner.expect("the sketch is there");
+            let Some(Source::Literal { literal: Literal::Strokes(strokes), .. }) =
+                body.node(id).and_then(|node| node.source("strokes"))
+            else {
+                return;
+            };
+            let mut moved = strokes.clone();
+            moved[0].points[20].x += 1e-6 + step;
+            let edit = Edit::Within { node, edit: Edit::set(id, "strokes", Literal::Strokes(moved)).into() };
+            saved.graph.apply(&saved.catalogue, &edit).expect("strokes fit");
+        });
+    }
+}
+
 /// A graph with a section drawn anew, a little aside: the fourth of the `drawn` curves at `index` of the `fitted`
 /// sections, for those that `read` them.
 fn edited(name: &str, [drawn, fitted]: [&str; 2], read: &[&str], index: i64) -> Saved {
@@ -147,5 +175,5 @@ fn edited(name: &str, [drawn, fitted]: [&str; 2], read: &[&str], index: i64) -> 
     saved
 }
 
-criterion_group!(benches, graphs, vest_changes, forearm_changes, human_changes);
+criterion_group!(benches, graphs, vest_changes, forearm_changes, human_changes, warrior_changes);
 criterion_main!(benches);

@@ -6,6 +6,8 @@ cargo build --release
 maquette="${CARGO_TARGET_DIR:-target}/release/maquette"
 mkdir -p docs/pictures
 draw() { "$maquette" render "graphs/$1.ron" -o "docs/pictures/$2.png" --size "$3" --quiet "${@:4}"; }
+draw warrior warrior 560x800
+draw warrior warrior-body 480x800 --output skin --output lips --output eyeballs --output irises --output pupils --output teeth
 draw vest vest-curves 560x640 --curves
 draw vest vest 560x640
 draw vest vest-wireframe 560x640 --wireframe

@@ -142,7 +142,8 @@ fn every_saved_graph_is_tested_here() {
             "shoulder-cap",
             "shoulder",
             "torso",
-            "vest"
+            "vest",
+            "warrior"
         ]
         .map(str::to_owned)
         .into(),
@@ -154,6 +155,7 @@ fn every_saved_graph_is_tested_here() {
 fn no_saved_graph_has_a_node_without_use() {
     for name in [
         "vest",
+        "warrior",
         "head",
         "neck",
         "leg",

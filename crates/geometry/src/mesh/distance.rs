@@ -39,6 +39,14 @@ impl MeshDistance {
         Ok(Self { tree: TriangleTree::new(mesh).ok_or(NoPolygons)? })
     }
 
+    /// The same for some of its polygons.
+    ///
+    /// # Errors
+    /// [`NoPolygons`] where none is `wanted`.
+    pub(crate) fn among(mesh: &Mesh, wanted: impl Fn(usize) -> bool) -> Result<Self, NoPolygons> {
+        Ok(Self { tree: TriangleTree::among(mesh, &|triangle| wanted(triangle.polygon)).ok_or(NoPolygons)? })
+    }
+
     /// The nearest point of the mesh. Where several are equally near it is always the same one.
     ///
     /// For a point that is not finite, neither is the distance.

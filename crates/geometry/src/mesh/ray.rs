@@ -43,6 +43,12 @@ impl MeshRays {
         Ok(Self { tree: TriangleTree::new(mesh).ok_or(NoPolygons)? })
     }
 
+    /// The same for those of its triangles that are `wanted`, such as those that lie on the way of all rays; `None` where
+    /// there are none.
+    pub(crate) fn among(mesh: &Mesh, wanted: impl Fn([DVec3; 3]) -> bool) -> Option<Self> {
+        TriangleTree::among(mesh, &|triangle| wanted(triangle.points)).map(|tree| Self { tree })
+    }
+
     /// The hit nearest to the `origin` of a ray, or `None` where the ray misses, its direction is zero or a number is
     /// not finite. A hit at the origin itself counts.
     pub fn first(&self, origin: DVec3, direction: DVec3) -> Option<RayHit> {

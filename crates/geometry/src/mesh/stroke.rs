@@ -96,8 +96,9 @@ pub fn draw_on(
     facing: Facing,
     spacing: f64,
 ) -> Result<Curve, StrokeError> {
-    let rays = MeshRays::new(mesh)?;
     let direction = unit(direction)?;
+    let under = Under::new(stroke, direction);
+    let rays = under.rays(mesh)?;
     let arc = ArcLength::of(stroke);
     let mut stations: Vec<f64> = Vec::new();
     for segment in 0..stroke.segment_count() {
@@ -115,10 +116,11 @@ pub fn draw_on(
     let mut points = Vec::with_capacity(stations.len());
     for s in stations {
         let at = arc.point_at(s);
-        let hit = match facing {
-            Facing::Seen => rays.first(at - reach * direction, direction),
-            Facing::Back => rays.last(at - reach * direction, direction),
-        };
+        let from = at - reach * direction;
+        let hit = rays.as_ref().and_then(|rays| match facing {
+            Facing::Seen => rays.first(from, direction),
+            Facing::Back => rays.last(from, direction),
+        });
         let share = 100.0 * s / arc.length().max(f64::MIN_POSITIVE);
         let hit = hit.ok_or_else(|| StrokeError::OffTheMesh { stroke: stroke.name().to_owned(), share, at })?;
         points.push(hit.point);
@@ -141,21 +143,18 @@ pub fn cut_along(
     keep: Keep,
     through: bool,
 ) -> Result<Mesh, StrokeError> {
-    let rays = MeshRays::new(mesh)?;
     let direction = unit(direction)?;
+    let under = Under::new(stroke, direction);
+    let rays = under.rays(mesh)?;
     let name = || stroke.name().to_owned();
     if !stroke.is_closed() {
         return Err(StrokeError::Open { stroke: name() });
     }
-    let (e1, e2) = direction.any_orthonormal_pair();
-    let flat = |p: DVec3| DVec2::new(p.dot(e1), p.dot(e2));
-    let outline: Vec<DVec2> = stroke.points().iter().map(|p| flat(*p)).collect();
-    let places: Vec<DVec2> = mesh.positions().iter().map(|p| flat(*p)).collect();
-    let mut inside: Vec<bool> = places.iter().map(|p| encloses(&outline, *p)).collect();
+    let mut inside: Vec<bool> = mesh.positions().iter().map(|p| under.encloses(*p)).collect();
     if !inside.contains(&true) {
         return Err(StrokeError::NothingInside { stroke: name() });
     }
-    if !through {
+    if let Some(rays) = rays.filter(|_| !through) {
         seen_only(mesh, &rays, direction, behind(mesh, stroke), &mut inside);
     }
     if keep == Keep::Outside && !inside.contains(&false) {
@@ -165,7 +164,49 @@ pub fn cut_along(
     // The sign alone counts; where along a side the cut is, the outline tells.
     let size = measure::diagonal(mesh).max(f64::MIN_POSITIVE);
     let heights: Vec<f64> = inside.iter().map(|within| if kept(*within) { size } else { -size }).collect();
-    Ok(cut(mesh, &heights, Line::Within(&|p| kept(encloses(&outline, flat(p)))))?)
+    Ok(cut(mesh, &heights, Line::Within(&|p| kept(under.encloses(p))))?)
+}
+
+/// A stroke as it is seen along a direction, and what lies under it.
+struct Under {
+    outline: Vec<DVec2>,
+    low: DVec2,
+    high: DVec2,
+    axes: [DVec3; 2],
+}
+
+impl Under {
+    fn new(stroke: &Curve, direction: DVec3) -> Self {
+        let axes: [DVec3; 2] = direction.any_orthonormal_pair().into();
+        let outline: Vec<DVec2> = stroke.points().iter().map(|p| flat(axes, *p)).collect();
+        let (low, high) =
+            outline.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
+        Self { outline, low, high, axes }
+    }
+
+    /// Even-odd rule.
+    fn encloses(&self, point: DVec3) -> bool {
+        let p = flat(self.axes, point);
+        p.cmpge(self.low).all() && p.cmple(self.high).all() && encloses(&self.outline, p)
+    }
+
+    /// The part of a mesh that rays through the stroke and what it encloses can meet; `None` where there is none.
+    fn rays(&self, mesh: &Mesh) -> Result<Option<MeshRays>, NoPolygons> {
+        if mesh.polygon_count() == 0 {
+            return Err(NoPolygons);
+        }
+        // What only touches the box may be met too, by rounding.
+        let margin = DVec2::splat(1e-9 * (measure::diagonal(mesh) + self.low.distance(self.high)));
+        let (low, high) = (self.low - margin, self.high + margin);
+        Ok(MeshRays::among(mesh, |points| {
+            let [a, b, c] = points.map(|p| flat(self.axes, p));
+            a.max(b).max(c).cmpge(low).all() && a.min(b).min(c).cmple(high).all()
+        }))
+    }
+}
+
+fn flat([e1, e2]: [DVec3; 2], p: DVec3) -> DVec2 {
+    DVec2::new(p.dot(e1), p.dot(e2))
 }
 
 fn unit(direction: DVec3) -> Result<DVec3, StrokeError> {

@@ -41,6 +41,11 @@ const LEAF: usize = 4;
 impl TriangleTree {
     /// Sorts the triangles of a mesh; `None` where it has none.
     pub(super) fn new(mesh: &Mesh) -> Option<Self> {
+        Self::among(mesh, &|_| true)
+    }
+
+    /// The same for those of its triangles that are `wanted`.
+    pub(super) fn among(mesh: &Mesh, wanted: &dyn Fn(&Triangle) -> bool) -> Option<Self> {
         let mut polygon = 0;
         let mut list: Vec<Triangle> = triangles(mesh)
             .map(|corners| {
@@ -49,6 +54,7 @@ impl TriangleTree {
                 }
                 Triangle { points: corner_points(mesh, corners), polygon }
             })
+            .filter(wanted)
             .collect();
         if list.is_empty() {
             return None;

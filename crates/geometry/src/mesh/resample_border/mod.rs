@@ -249,7 +249,7 @@ fn assembled(
     positions.extend(&even.points);
     let replaced = [collar.gone.iter().filter(|gone| **gone).count(), faces.len()];
     let charts = match mesh.uvs() {
-        Some(_) => Some(Charts { mesh, nearest: MeshDistance::new(mesh)? }),
+        Some(_) => Some(Charts { mesh, nearest: MeshDistance::among(mesh, |polygon| collar.gone[polygon])? }),
         None => None,
     };
     for face in faces {
