@@ -14,6 +14,13 @@ use glam::DVec3;
 
 use crate::curve::{ArcLength, Curve, closest};
 
+/// Direction of the parabola through three points at the middle one, of any length: on a round surface square to its normal
+/// there, however far apart the points are, and where they turn a corner too.
+pub(crate) fn tangent_at([before, at, after]: [DVec3; 3]) -> DVec3 {
+    let (back, ahead) = (at - before, after - at);
+    back * ahead.length_squared() + ahead * back.length_squared()
+}
+
 /// A curve at which a surface ends, with the unit direction at each of its points in which the surface would go on: in
 /// its tangent plane, away from it.
 #[derive(Clone, Debug, PartialEq)]

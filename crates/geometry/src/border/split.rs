@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Border, BorderError};
+use super::{Border, BorderError, tangent_at};
 use crate::curve::{ArcLength, CubicSpline, Curve, SplineError, SplineLength, chord_parameters, closest, place};
 
 /// Points of the border nearer to the one before than this share of their mean distance carry no spline.
@@ -95,8 +95,10 @@ pub fn split(border: &Border, corners: &[DVec3], count: usize) -> Result<Vec<Bor
     }
     let point = |k: usize| curve.points()[k];
     let normal = |k: usize| {
-        let along = point((k + 1) % total) - point((k + total - 1) % total);
-        along.cross(border.directions()[k]).normalize_or_zero()
+        let away = |other: &usize| point(*other).distance(point(k)) >= TOO_NEAR * spacing;
+        let back = (1..total).map(|step| (k + total - step) % total).find(away).unwrap_or(k);
+        let ahead = (1..total).map(|step| (k + step) % total).find(away).unwrap_or(k);
+        tangent_at([point(back), point(k), point(ahead)]).cross(border.directions()[k]).normalize_or_zero()
     };
     let corners: Vec<(DVec3, DVec3)> = (0..cuts.len())
         .map(|corner| {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::ResampleBorderError;
-use crate::border::Border;
+use crate::border::{Border, tangent_at};
 use crate::curve::{ArcLength, CubicSpline, Curve, SplineLength, chord_parameters, closest};
 use crate::mesh::{Mesh, measure};
 
@@ -107,7 +107,8 @@ impl Rim {
             let (segment, share) = arc.locate(near.arc_length);
             let own =
                 self.normals[segment].lerp(self.normals[(segment + 1) % self.normals.len()], share).normalize_or_zero();
-            let other = (at(k + 1) - at(k + count - 1)).cross(ring.directions()[k]).normalize_or_zero();
+            let other =
+                tangent_at([at(k + count - 1), at(k), at(k + 1)]).cross(ring.directions()[k]).normalize_or_zero();
             // Where a cut took a corner off, the border does not tell what is there.
             if near.distance <= off || other == DVec3::ZERO { own } else { other * other.dot(own).signum() }
         };
