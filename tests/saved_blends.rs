@@ -128,7 +128,7 @@ fn a_transition_joins_an_ellipsoid_and_a_cylinder() {
     for node in ["head", "trunk"] {
         let id = saved.node(node);
         for input in ["sections", "nodes"] {
-            saved.graph.set(&saved.catalogue, id, input, maquette_graph::Literal::Integer(128)).unwrap();
+            saved.graph.set(id, input, maquette_graph::Literal::Integer(128)).unwrap();
         }
     }
     let evaluation = saved.evaluate(&mut evaluator, &targets);
