@@ -68,7 +68,7 @@ fn silhouettes(c: &mut Criterion) {
     )
     .expect("a curve");
     c.bench_function("deform 64 x 64 to a free-form curve, four rails held", |b| {
-        b.iter(|| black_box(deform_to_curves(&railed, &[drawn.clone()], &FreeFormOptions::default(), &go)));
+        b.iter(|| black_box(deform_to_curves(&railed, std::slice::from_ref(&drawn), &FreeFormOptions::default(), &go)));
     });
     c.bench_function("align 64 x 64 to strokes of two views", |b| {
         b.iter(|| black_box(align_primitive(&primitive, &two, &AlignOptions::default(), &go)).expect("sections"));
