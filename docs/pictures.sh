@@ -23,7 +23,7 @@ draw hip hip 480x480
 draw from-image from-image 480x360
 draw bar-bent bar-bent 480x400 --view front
 draw bar-twisted bar-twisted 240x480 --wireframe
-draw hand hand 560x400 --view side
+draw hand hand 560x400
 draw body-posed body-posed 400x640
 draw open-strokes open-strokes 480x400 --curves
 for experiment in cantilever supported tyre; do
