@@ -36,7 +36,7 @@ draw forearm-sheet forearm-sheet 360x480
 draw knee-guard knee-guard 360x480 --curves
 draw bar-bent bar-bent 480x400 --view front
 draw bar-twisted bar-twisted 240x480 --wireframe
-draw hand hand 560x400 --view side
+draw hand hand 560x400
 draw body-posed body-posed 400x640
 draw open-strokes open-strokes 480x400 --curves
 for experiment in cantilever supported tyre; do

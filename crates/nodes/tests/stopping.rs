@@ -180,6 +180,8 @@ fn nodes_on_meshes() {
         h.give("first", mesh.clone()).give("second", mesh.clone())
     });
     stops(&catalogue, "select-by-mesh", 400 * 400 / 4096, |h| h.give("mesh", mesh.clone()).give("other", flat.clone()));
+    let points = Literal::Text("1 0 1, ".repeat(20));
+    stops(&catalogue, "select-points", 20, |h| h.give("mesh", mesh.clone()).set("points", points.clone()));
     let lasso = wire::Curves(vec![ring("", 300, 150.0, 9.0)]);
     stops(&catalogue, "select-by-stroke", 400 * 400 / 4096, |h| {
         h.give("mesh", mesh.clone()).give("strokes", lasso.clone()).set("view", Literal::Choice("top".into()))

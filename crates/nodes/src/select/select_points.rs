@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use maquette_geometry::mesh::select::{Picked, SelectError, by_points};
-use maquette_graph::{AtPort, NodeKind, Unit};
+use maquette_graph::{AtPort, NodeError, NodeKind, Unit};
 
 use crate::selecting::SelectionOutput;
 use crate::wire;
@@ -45,12 +45,11 @@ pub(crate) fn kind() -> NodeKind {
     node.evaluate(move |ports| {
         let body = &ports.read(mesh).0;
         let places = parse(ports.read(points).as_str()).at(points)?;
-        ports.progress(0.1)?;
-        let found = match by_points(body, &places, ports.value(tolerance)) {
+        let found = match by_points(body, &places, ports.value(tolerance), &ports.progress_callback()) {
             Err(error @ SelectError::NoPolygons) => Err(error).at(mesh),
             found => found.at(points),
-        };
-        let (weights, picked) = found?;
+        }?;
+        let Some((weights, picked)) = found else { return Err(NodeError::Cancelled) };
         for (index, (place, one)) in places.iter().zip(&picked).enumerate().filter(|(_, (_, one))| !one.found) {
             ports.warn(format!(
                 "point {index} at ({}, {}, {}) no longer finds its place: the nearest vertex is {:.4} m away; pick it \

@@ -55,12 +55,19 @@ pub struct Picked {
 }
 
 /// Weight 1 for the vertex nearest to each of some points, where it is within `tolerance` metres of it, and what each
-/// point found; of equally near vertices the first.
+/// point found; of equally near vertices the first. Each point is compared with every vertex.
+///
+/// `progress` is called with the fraction done; `Ok(None)` where it answers `false`.
 ///
 /// # Errors
 /// [`SelectError`] for a tolerance that is negative or not finite, points that are not finite, no point, and a mesh
 /// without vertices.
-pub fn by_points(mesh: &Mesh, points: &[DVec3], tolerance: f64) -> Result<(Selection, Vec<Picked>), SelectError> {
+pub fn by_points(
+    mesh: &Mesh,
+    points: &[DVec3],
+    tolerance: f64,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<Option<(Selection, Vec<Picked>)>, SelectError> {
     if !tolerance.is_finite() {
         return Err(SelectError::NotFinite { what: "tolerance" });
     }
@@ -73,17 +80,20 @@ pub fn by_points(mesh: &Mesh, points: &[DVec3], tolerance: f64) -> Result<(Selec
     if points.is_empty() {
         return Err(SelectError::NoPoint);
     }
-    let nearest = |point: &DVec3| {
+    let mut picked = Vec::with_capacity(points.len());
+    for point in points {
+        if !progress(picked.len() as f64 / points.len() as f64) {
+            return Ok(None);
+        }
         let distances = mesh.positions().iter().map(|p| p.distance_squared(*point)).enumerate();
-        let (vertex, square) =
-            distances.min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0))).ok_or(SelectError::NoPolygons)?;
+        let nearest = distances.min_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+        let (vertex, square) = nearest.ok_or(SelectError::NoPolygons)?;
         let distance = square.sqrt();
-        Ok(Picked { vertex: vertex as u32, distance, found: distance <= tolerance })
-    };
-    let picked = points.iter().map(nearest).collect::<Result<Vec<_>, _>>()?;
+        picked.push(Picked { vertex: vertex as u32, distance, found: distance <= tolerance });
+    }
     let mut chosen = vec![false; mesh.positions().len()];
     picked.iter().filter(|p| p.found).for_each(|p| chosen[p.vertex as usize] = true);
-    Ok((Selection::by(chosen.len(), |vertex| chosen[vertex]), picked))
+    Ok(Some((Selection::by(chosen.len(), |vertex| chosen[vertex]), picked)))
 }
 
 #[cfg(test)]
@@ -115,13 +125,17 @@ mod tests {
     #[test]
     fn points_find_their_vertices_or_say_how_far_they_are() {
         let points = [DVec3::new(1.1, 0.0, 2.0), DVec3::new(4.0, 0.5, 4.0), DVec3::new(1.0, 0.05, 2.0)];
-        let (found, picked) = by_points(&net(), &points, 0.2).unwrap();
+        let (found, picked) = by_points(&net(), &points, 0.2, &|_| true).unwrap().unwrap();
         assert_eq!(found.vertices(), [11]);
         assert_eq!((picked[0].vertex, picked[0].found), (11, true));
         assert!((picked[0].distance - 0.1).abs() < 1e-12);
         assert_eq!(picked[1], Picked { vertex: 24, distance: 0.5, found: false });
-        assert_eq!(by_points(&net(), &[], 0.2).unwrap_err(), SelectError::NoPoint);
-        assert_eq!(by_points(&Mesh::default(), &points, 0.2).unwrap_err(), SelectError::NoPolygons);
-        assert_eq!(by_points(&net(), &[DVec3::NAN], 0.2).unwrap_err(), SelectError::NotFinite { what: "point" });
+        assert_eq!(by_points(&net(), &[], 0.2, &|_| true).unwrap_err(), SelectError::NoPoint);
+        assert_eq!(by_points(&Mesh::default(), &points, 0.2, &|_| true).unwrap_err(), SelectError::NoPolygons);
+        assert_eq!(
+            by_points(&net(), &[DVec3::NAN], 0.2, &|_| true).unwrap_err(),
+            SelectError::NotFinite { what: "point" }
+        );
+        assert_eq!(by_points(&net(), &points, 0.2, &|done| done < 0.5), Ok(None));
     }
 }
