@@ -1,7 +1,6 @@
 //! Nodes that make surfaces, and that look at them.
 
 pub(crate) mod continuity_report;
-mod edges;
 pub(crate) mod join_surfaces;
 pub(crate) mod section_at;
 pub(crate) mod surface_from_cross_sections;

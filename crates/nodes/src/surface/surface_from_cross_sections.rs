@@ -10,7 +10,7 @@ use maquette_geometry::surface::tessellate::{Closing, Density, Spacing, Tessella
 use maquette_geometry::surface::{Cap, SkinError, SkinOptions, skin_beside};
 use maquette_graph::{AtPort, ChoiceInput, FigureHandle, Input, NodeError, NodeKind, OptionalInput, Ports, Unit};
 
-use super::edges::Edges;
+use crate::edges::Edges;
 use crate::surfacing::{BlendChoice, ClosingChoice, EndChoice, JoinChoice, ParameterChoice, PoleChoice, blend_name};
 use crate::wire;
 

@@ -11,14 +11,14 @@ use maquette_geometry::surface::Beside;
 const ALONG: f64 = 0.005;
 
 /// Directions beside the first and last section and, where sections are open, the sides.
-pub(super) struct Edges {
+pub(crate) struct Edges {
     directions: [Option<Vec<DVec3>>; 4],
 }
 
 impl Edges {
     /// # Errors
     /// A border that lies along no edge, by name.
-    pub(super) fn of(sections: &Sections, borders: &[Border]) -> Result<Self, String> {
+    pub(crate) fn of(sections: &Sections, borders: &[Border]) -> Result<Self, String> {
         let mut directions = [const { None }; 4];
         if borders.is_empty() {
             return Ok(Self { directions });
@@ -48,7 +48,7 @@ impl Edges {
         Ok(Self { directions })
     }
 
-    pub(super) fn beside(&self) -> Beside<'_> {
+    pub(crate) fn beside(&self) -> Beside<'_> {
         let [start, end, first, last] = self.directions.each_ref().map(|directions| directions.as_deref());
         Beside { ends: [start, end], sides: [first, last] }
     }
