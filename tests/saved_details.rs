@@ -141,7 +141,7 @@ fn the_shoulder_caps_leave_the_bust_without_gap_or_crease() {
     let contour = &curves(&saved, &evaluation, "even contour", "curves")[0];
     let ridge: Vec<DVec3> = made.iter().map(|row| row[middle]).collect();
     let gap = largest_gap(&saved, &evaluation, "cap");
-    assert!(gap < 1e-6 && off(&ridge, contour) <= gap + 1e-12, "{gap} {}", off(&ridge, contour));
+    assert!(gap < 5e-6 && off(&ridge, contour) <= gap + 1e-12, "{gap} {}", off(&ridge, contour));
     // C0 and C1 along the whole joint, at every row on both sides.
     for row in 1..last {
         let section = made.section(row);

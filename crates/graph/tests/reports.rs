@@ -127,7 +127,9 @@ fn what_is_asked_for_depends_on_is_examined_too_and_only_what_is_named_where_nam
     rig.request(Request::nodes(&[behind]));
     assert_eq!(rig.log, ["planned 2", "started rows", "finished rows", "started behind", "finished behind"]);
     let found = rig.request(Request::nodes(&[behind]).examine());
-    assert_eq!(rig.log, ["hit rows", "hit behind", "planned 0", "examined rows"]);
+    // Which hit is found first is no promise.
+    rig.log[..2].sort_unstable();
+    assert_eq!(rig.log, ["hit behind", "hit rows", "planned 0", "examined rows"]);
     assert_eq!(report(&found, &rig).figure("sum").map(|sum| sum.value), Some(6.0));
 
     rig.put("rows.count", maquette_graph::Literal::Integer(4));

@@ -5,6 +5,7 @@ mod affine;
 mod anchor;
 mod curve;
 mod deform;
+mod edges;
 mod fitting;
 mod frozen;
 mod generate;

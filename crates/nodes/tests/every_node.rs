@@ -100,6 +100,7 @@ fn register_handles(catalogue: &mut Catalogue) {
     let square = wire::Mesh::new(square());
     catalogue.register(constant("good-selection", wire::Selection::new(Selection::by(4, |_| true), square))).unwrap();
     catalogue.register(constant("for-bind-deformation-mesh", mesh.clone())).unwrap();
+    catalogue.register(constant("for-resample-border-mesh", mesh.clone())).unwrap();
     catalogue.register(constant("good-held", turned.held())).unwrap();
     catalogue.register(constant("good-handles", turned.clone())).unwrap();
     catalogue.register(constant("good-bound", bind(turned.held(), None))).unwrap();

@@ -108,7 +108,7 @@ fn nodes_on_curves() {
     stops(&catalogue, "compare-curves", 100, |h| h.give("first", one.clone()).give("second", other.clone()));
     // Before each of its steps; tracing itself is one.
     let sole = include_bytes!("../../../graphs/data/pictures/sole.png");
-    stops(&catalogue, "trace-image", 8, |h| h.file("file", "sole.png", sole.to_vec()));
+    stops(&catalogue, "trace-image", 7, |h| h.file("file", "sole.png", sole.to_vec()));
     let json = curves_json::write(&many.0);
     stops(&catalogue, "import-curves", json.len() >> 17, |h| h.file("file", "a.json", json.clone()));
 }

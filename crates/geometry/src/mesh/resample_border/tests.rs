@@ -60,9 +60,10 @@ fn a_hole_gets_even_points_on_the_surface_and_no_fold() {
         let normals = made.mesh.corners().iter().zip(made.mesh.normals().unwrap());
         let off = normals.map(|(vertex, n)| n.angle_between(made.mesh.positions()[*vertex as usize]).to_degrees());
         assert!(off.fold(0.0, f64::max) < 0.12);
-        // No more and no less of the sphere than before.
+        // No more and no less of the sphere than before, but what lies between a polygon of so many sides and the ellipse.
         let lost = measure::area(&mesh) - measure::area(&made.mesh);
-        assert!(lost.abs() < 0.02 * TAU * 0.35 / points as f64 + 1e-3, "{points}: {lost}");
+        let between = 0.12 * PI * (TAU / points as f64).powi(2) / 6.0;
+        assert!(lost.abs() < 1.2 * between + 1e-3, "{points}: {lost}");
     }
 }
 
