@@ -24,7 +24,7 @@ draw sea-star sea-star 480x440
 draw blend blend 320x560 --wireframe
 draw shoulder shoulder 560x480
 draw patch patch 560x400 --curves
-draw chest chest 400x560
+draw chest chest 400x560 --curves
 draw forearm forearm 400x480 --wireframe
 draw hip hip 480x480
 draw from-image from-image 480x360

@@ -206,7 +206,7 @@ fn a_patch_closes_an_opening_and_continues_the_hull_on_all_sides() {
     }
     assert!(ripple(patch).sign_changes <= 4, "{:?}", ripple(patch));
     let fold = steepest_fold(whole, |p| p.y > 0.06);
-    assert!(fold < 20.0, "{fold}");
+    assert!(fold < 10.0, "{fold}");
     // Off the patch the hull is as it was.
     let hull = mesh(&saved, &evaluation, "hull surface");
     let low = hull.positions().iter().filter(|p| p.y < 0.07);

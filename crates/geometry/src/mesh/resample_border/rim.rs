@@ -11,6 +11,9 @@ use crate::mesh::{Mesh, measure};
 /// about their places would be a bend.
 const TOO_NEAR: f64 = 0.25;
 
+/// Least sine of the angle between the ways from a corner of a ring.
+const CORNER: f64 = 0.35;
+
 /// Largest distance from the border, in its mean sides, of a point at which its normals count.
 const OFF: f64 = 0.02;
 
@@ -107,8 +110,16 @@ impl Rim {
             let (segment, share) = arc.locate(near.arc_length);
             let own =
                 self.normals[segment].lerp(self.normals[(segment + 1) % self.normals.len()], share).normalize_or_zero();
-            let other =
-                tangent_at([at(k + count - 1), at(k), at(k + 1)]).cross(ring.directions()[k]).normalize_or_zero();
+            // At a corner the curvatures of both sides count, each by itself.
+            let (ahead, back) =
+                (way([at(k), at(k + 1), at(k + 2)]), way([at(k), at(k + count - 1), at(k + count - 2)]));
+            let corner = back.cross(ahead);
+            let other = if corner.length() > CORNER {
+                corner.normalize_or_zero()
+            } else {
+                let along = tangent_at([at(k + count - 1), at(k), at(k + 1)]);
+                along.cross(ring.directions()[k]).normalize_or_zero()
+            };
             // Where a cut took a corner off, the border does not tell what is there.
             if near.distance <= off || other == DVec3::ZERO { own } else { other * other.dot(own).signum() }
         };
@@ -136,6 +147,13 @@ impl Rim {
         }
         kept
     }
+}
+
+/// Unit direction in which the parabola through three points leaves the first.
+fn way([at, next, after]: [DVec3; 3]) -> DVec3 {
+    let (near, far) = (at.distance(next), next.distance(after));
+    let (first, second) = ((next - at) / near, (after - next) / far);
+    (first + (first - second) * (near / (near + far))).normalize_or_zero()
 }
 
 /// The curve on which even points are placed.
