@@ -239,7 +239,8 @@ mod tests {
             // Points that no other equals: else which of two at one place is kept is up to the start.
             let distinct: std::collections::BTreeSet<_> = places.iter().collect();
             prop_assume!(distinct.len() == points.len());
-            points.rotate_left(shift % points.len());
+            let by = shift % points.len();
+            points.rotate_left(by);
             let turned = Curve::new("", points, true).unwrap();
             let kept = |curve: &Curve| {
                 let mut points: Vec<[i64; 3]> = simplify(curve, tolerance)
