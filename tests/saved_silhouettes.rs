@@ -121,7 +121,9 @@ fn the_leg_is_deformed_again_to_free_form_curves() {
     let still = |rail: usize| (0..before.len()).all(|k| before.section(k)[rail] == after.section(k)[rail]);
     assert_eq!(after.rails(), before.rails());
     assert!(after.rails().iter().filter(|rail| still(**rail)).count() >= 2);
-    assert!(figure(&saved, &evaluation, "fit", "largest-percent") < 0.5);
+    // The calf stands out of the outline that the strokes gave, by the centimetre that was drawn.
+    let off = figure(&saved, &evaluation, "fit", "largest");
+    assert!((0.005..0.015).contains(&off), "{off}");
 }
 
 #[test]
