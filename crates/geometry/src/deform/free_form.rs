@@ -127,10 +127,11 @@ struct Pin {
 ///   pinned there: the place nearest to the point of passage, at or between points of the section, goes to it, to 1e-12
 ///   of the section's size. Between its points the section is the smooth closed curve through them, a cubic spline over
 ///   their number. Of several passages the nearest counts.
-/// - **Displacement.** The section is a closed beam, and the displacement of its points the exact solution of
-///   `k_b d'''' - k_s d'' = 0` around it through all pins ([`TensionSpline`]), so that it keeps its own shape. Held rails
-///   are pins that stay; within a twelfth of the way around from a curve they give way, all the more the closer it is, so
-///   that a curve may cross them without a crease. Without held rails, one curve moves whole sections.
+/// - **Displacement.** The section is a closed beam, and the displacement of its points the exact solution of its
+///   equation, `k_b d'''' - k_s d'' = 0`, around it through all pins ([`TensionSpline`]), so that it keeps its own shape.
+///   Rails that are held are pins that stay; within a twelfth of the way around from a curve they give way, all the more
+///   the closer it is, so that a curve may cross them without a crease. Without held rails, one curve moves whole
+///   sections.
 /// - **Ends.** Beyond the ends of a curve sections follow less and less over `fade`, as a clamped beam does. A curve that
 ///   begins and ends on the surface needs none of it.
 ///
