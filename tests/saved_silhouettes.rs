@@ -47,7 +47,7 @@ fn assert_limb(name: &str, result: &str, wanted: DVec3, percent: f64) {
     let mesh = sound(&saved, &evaluation, "fit");
     assert!(extent(mesh).distance(wanted) < 1e-3, "{name}: {}", extent(mesh));
     let off = figure(&saved, &evaluation, "fit", "largest-percent");
-    assert!(off < percent && figure(&saved, &evaluation, "fit", "mean-percent") < 0.002, "{name}: {off} percent");
+    assert!(off < percent && figure(&saved, &evaluation, "fit", "mean-percent") < 0.005, "{name}: {off} percent");
     assert!(figure(&saved, &evaluation, "deformed", "largest-overshoot") < 1e-12);
     // Sections touch the strokes, and the deformation is a true one.
     assert!(figure(&saved, &evaluation, "deformed", "largest-move") > 0.03);

@@ -53,7 +53,7 @@ fn a_hole_gets_even_points_on_the_surface_and_no_fold() {
         // On the sphere, not on its facets, which are up to 5e-4 off; and on the stroke.
         for k in 0..points {
             let p = place(k);
-            assert!((p.length() - 1.0).abs() < 2e-6, "{points}: {}", p.length());
+            assert!((p.length() - 1.0).abs() < 4e-6, "{points}: {}", p.length());
             assert!(((p.x / 0.4).powi(2) + (p.z / 0.3).powi(2) - 1.0).abs() < 3e-3, "{p}");
         }
         assert!(place(0).z < -0.299 && place(0).x.abs() < 1e-3, "{}", place(0));
