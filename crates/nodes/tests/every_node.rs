@@ -245,6 +245,8 @@ fn test_catalogue() -> Catalogue {
     for (index, borders) in nasty_borders.into_iter().enumerate() {
         catalogue.register(constant(&format!("nasty-borders-{index}"), borders)).unwrap();
     }
+    let corners = Curve::new("corners", vec![DVec3::X, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Z], true).unwrap();
+    catalogue.register(constant("for-split-border-corners", wire::Curves(vec![corners]))).unwrap();
     catalogue.register(constant("good-borders", border(circle("ring", 1.0, 0.0), DVec3::Y))).unwrap();
     catalogue.register(constant("good-shape", wire::Shape::Mesh(wire::Mesh::new(square())))).unwrap();
     catalogue.register(constant("nasty-shape-0", wire::Shape::Mesh(wire::Mesh::new(Mesh::default())))).unwrap();
