@@ -63,7 +63,7 @@ fn a_hole_gets_even_points_on_the_surface_and_no_fold() {
         // No more and no less of the sphere than before, but what lies between a polygon of so many sides and the ellipse.
         let lost = measure::area(&mesh) - measure::area(&made.mesh);
         let between = 0.12 * PI * (TAU / points as f64).powi(2) / 6.0;
-        assert!(lost.abs() < 1.2 * between + 1e-3, "{points}: {lost}");
+        assert!(lost.abs() < 1.2 * between + 2e-3, "{points}: {lost}");
     }
 }
 
