@@ -102,7 +102,7 @@ impl SilhouetteDeformer<'_> {
     ///
     /// Between two given sections stand as few more as keep the lines from pin to pin within the tolerance, at points of
     /// the strokes, and placed so that what the strokes are off at most is as little as that many allow. Then intervals
-    /// are halved, up to eight times, where the spline through the pins (as [`crate::surface::skin`] makes it) swings
+    /// are halved, up to eight times, where the spline through the pins (as [`crate::surface::skin()`] makes it) swings
     /// beside a corner by more than the tolerance.
     ///
     /// # Errors
