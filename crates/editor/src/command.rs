@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use maquette_graph::{Edit, NodeId};
 
+use crate::canvas::arrange::Alignment;
 use crate::view_state::Tool;
 
 /// Something that was asked for.
@@ -115,6 +116,12 @@ pub enum GraphCommand {
     },
     /// Places all nodes by what they depend on.
     Arrange,
+    /// Places the selected nodes by what they depend on, where they are.
+    ArrangeSelected,
+    /// Lines the selected nodes up, or spreads them.
+    Align(Alignment),
+    /// Lets the first two inputs of the active node change places.
+    Swap,
 }
 
 /// What a new node is linked to.
