@@ -35,7 +35,10 @@ impl App {
             GraphCommand::Add { kind, at, link } => self.add(&kind, at, link),
             GraphCommand::DropOnLink { node, to, input, at } => self.drop_on_link(node, to, &input, at),
             GraphCommand::Delete => {
-                let edits = self.selected().into_iter().map(Edit::RemoveNode).collect();
+                let selected = &self.view.selection;
+                let links = self.canvas.take_selected_links().into_iter().filter(|(to, _)| !selected.contains(to));
+                let links = links.map(|(to, input)| Edit::Disconnect { to, input });
+                let edits = links.chain(selected.iter().copied().map(Edit::RemoveNode)).collect();
                 self.make("delete", edits, None);
             }
             GraphCommand::Dissolve => self.dissolve(),

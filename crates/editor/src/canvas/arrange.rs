@@ -120,8 +120,7 @@ fn arrange_cards(cards: &Cards, wanted: impl Fn(NodeId) -> bool) -> BTreeMap<Nod
         let (from, to) = (&cards.all[link.from], &cards.all[link.to]);
         (wanted(from.id) && wanted(to.id)).then_some(((from.key, link.output), (to.key, link.input)))
     });
-    let params =
-        LayoutParams::new(egui::Direction::LeftToRight).layer_gap(BETWEEN_COLUMNS).node_gap(BETWEEN_NODES);
+    let params = LayoutParams::new(egui::Direction::LeftToRight).layer_gap(BETWEEN_COLUMNS).node_gap(BETWEEN_NODES);
     let nodes: Vec<_> = chosen.iter().map(|card| offsets(card)).collect();
     let placed = egui_graph::layout(nodes, links.collect::<Vec<_>>(), params);
     let place = |card: &&Card| card.rect(placed.get(&card.key).copied().unwrap_or_default().round());

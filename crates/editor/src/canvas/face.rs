@@ -120,6 +120,7 @@ pub(super) fn show(
         from_afar(ui.painter(), card.rect(corner), face, ui.visuals());
         return;
     }
+    stripe(ui.painter(), card.rect(corner), card, ui.visuals());
     let colour = status_colour(status, ui.visuals());
     line(ui, TITLE, |ui| {
         let (rect, response) = ui.allocate_exact_size(vec2(11.0, 14.0), egui::Sense::hover());
@@ -188,13 +189,14 @@ fn title_size(zoom: f32) -> f32 {
 /// A node of which only the title can be read: a few shapes, so that a large graph stays quick.
 fn from_afar(painter: &egui::Painter, rect: egui::Rect, face: Face<'_>, visuals: &egui::Visuals) {
     let Face { card, node, status, zoom } = face;
+    stripe(painter, rect, card, visuals);
     let scale = (0.62 / zoom.max(1e-3)).clamp(1.4, 3.0);
     let head = TITLE + KIND + GAP;
     let middle = rect.min + vec2(10.0 + 4.0 * scale, 7.0 + 0.5 * head);
     status_sign(painter, status, status_colour(status, visuals), middle, scale);
     let text = if node.is_muted() { visuals.weak_text_color() } else { visuals.strong_text_color() };
     let size = title_size(zoom);
-    let left = middle.x + 6.0 * scale;
+    let left = middle.x + 7.0 * scale;
     let mut job = egui::text::LayoutJob::simple(node.name().to_owned(), egui::FontId::proportional(size), text, 0.0);
     // As much of it as the node has room for.
     job.wrap = egui::text::TextWrapping {
@@ -219,6 +221,17 @@ pub(super) fn paint(painter: &egui::Painter, place: Pos2, face: Face<'_>, select
     from_afar(painter, rect, face, visuals);
 }
 
+/// A stripe along the upper edge in the colour of what the node gives, so that a large graph can be read by its colours.
+fn stripe(painter: &egui::Painter, rect: egui::Rect, card: &Card, visuals: &egui::Visuals) {
+    let Some(port) = card.outputs.first() else { return };
+    let inner = rect.shrink(1.0);
+    let stripe = egui::Rect::from_min_size(inner.min, vec2(inner.width(), 3.0));
+    let mut radius = visuals.window_corner_radius;
+    radius.sw = 0;
+    radius.se = 0;
+    painter.rect_filled(stripe, radius, port.colour(visuals.dark_mode).gamma_multiply(0.8));
+}
+
 /// The background of a node.
 pub(super) fn fill(node: &Node, visuals: &egui::Visuals) -> Color32 {
     if node.is_muted() { visuals.window_fill.gamma_multiply(0.7) } else { visuals.window_fill }
@@ -236,7 +249,8 @@ fn row(ui: &mut Ui, port: &Port, is_output: bool) {
     let text = if port.missing { text.color(ui.visuals().warn_fg_color) } else { text };
     let layout = if is_output { Layout::right_to_left(Align::Center) } else { Layout::left_to_right(Align::Center) };
     let (rect, _) = ui.allocate_exact_size(vec2(WIDTH, ROW), egui::Sense::hover());
-    let label = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout)).add(egui::Label::new(text).truncate());
+    let label =
+        ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(layout)).add(egui::Label::new(text).truncate());
     label.on_hover_ui(|ui| {
         let wire = port.wire.map_or("unknown", |wire| wire.name());
         let needed = if port.missing { "\nnothing is linked here, and something must be" } else { "" };
@@ -256,9 +270,8 @@ fn flags(ui: &mut Ui, context: &mut PanelContext<'_>, card: &Card, node: &Node) 
     let flag = |ui: &mut Ui, sign: &str, on: bool, what: &str, hint: &str| {
         let sign = RichText::new(sign).size(10.0);
         let response = ui.add(egui::Button::selectable(on, sign).small());
-        response.widget_info(|| {
-            egui::WidgetInfo::selected(egui::WidgetType::Checkbox, true, on, format!("{what} {name}"))
-        });
+        response
+            .widget_info(|| egui::WidgetInfo::selected(egui::WidgetType::Checkbox, true, on, format!("{what} {name}")));
         response.on_hover_text(hint).clicked()
     };
     let mut asked: Vec<Command> = Vec::new();

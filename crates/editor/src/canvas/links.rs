@@ -88,11 +88,12 @@ impl Answers {
     fn of(edges: &egui_graph::EdgesCtx, ui: &egui::Ui, stage: &Stage<'_>) -> Self {
         let free = edges.in_progress(ui).is_none();
         let typing = ui.ctx().egui_wants_keyboard_input();
-        let pointer = ui.response().hover_pos();
+        let pointer = stage.pointer.filter(|_| !stage.is_over_node);
         ui.input(|i| Self {
             pointer,
             free,
-            deletes: !typing && (i.key_pressed(egui::Key::Delete) || i.key_pressed(egui::Key::Backspace)),
+            // Delete is a command of its own.
+            deletes: !typing && i.key_pressed(egui::Key::Backspace),
             deselects: i.pointer.primary_pressed() && !i.modifiers.command,
             band: stage.band.filter(|_| i.modifiers.shift).map(|band| (band, i.pointer.primary_released())),
             adds: i.modifiers.command,

@@ -46,10 +46,14 @@ struct Stage<'a> {
     dark: bool,
     /// Where the pointer is on the canvas.
     pointer: Option<Pos2>,
+    /// Whether the pointer is on a node.
+    is_over_node: bool,
     /// The rectangle from where the button was pressed to the pointer, while it is.
     band: Option<Rect>,
 }
 
+/// Points of the screen for a point of the canvas, at least and at most.
+const ZOOM: egui::Rangef = egui::Rangef { min: 0.1, max: 1.5 };
 /// How far from a node the pointer may be to do something with it, points of the canvas.
 const REACH: f32 = 34.0;
 /// Points of the canvas between two dots of its background, and of the screen at least.
@@ -113,17 +117,18 @@ impl Canvas {
     }
 
     /// Where a socket is on the screen.
-    pub(crate) fn socket_on_screen(
-        &self,
-        path: &[NodeId],
-        (node, port, output): (NodeId, &str, bool),
-    ) -> Option<Pos2> {
+    pub(crate) fn socket_on_screen(&self, path: &[NodeId], (node, port, output): (NodeId, &str, bool)) -> Option<Pos2> {
         let places = self.places.get(path)?;
         let card = places.cards.of(node)?;
         let ports = if output { &card.outputs } else { &card.inputs };
         let index = ports.iter().position(|known| known.name == port)?;
         let place = if output { card.output(index) } else { card.input(index) };
         Some(self.to_canvas.inverse() * (*places.view.layout.get(&card.key)? + place?))
+    }
+
+    /// The links that are selected, by the input at which each ends; none is afterwards.
+    pub(crate) fn take_selected_links(&mut self) -> BTreeSet<(NodeId, String)> {
+        std::mem::take(&mut self.selected_links)
     }
 
     /// Whether a node to add is searched.
@@ -157,9 +162,11 @@ impl Canvas {
         let cards = &places.cards;
         // In every frame: what is not seen, the widget forgets.
         let selected: HashSet<_> = selection.iter().filter_map(|id| Some(cards.of(*id)?.key)).collect();
-        let widget = egui_graph::Graph::from_id(graph_id).zoom_range(0.1..=1.5).dot_grid(false).selected_nodes(selected);
-        let corners = cards.all.iter().map(|card| places.view.layout.get(&card.key).map_or(Pos2::ZERO, |at| at.round()));
+        let widget = egui_graph::Graph::from_id(graph_id).zoom_range(ZOOM).dot_grid(false).selected_nodes(selected);
+        let corners =
+            cards.all.iter().map(|card| places.view.layout.get(&card.key).map_or(Pos2::ZERO, |at| at.round()));
         let corners = corners.collect();
+        let mut is_over_node = false;
         let shown = widget.show(&mut places.view, ui, |ui, show| {
             let mut stage = self.stage(ui, cards, corners);
             let mut painted = Vec::new();
@@ -171,9 +178,13 @@ impl Canvas {
                 self.drag.show_line(edges, ui, context, graph_id);
                 self.show_cut(ui);
             });
+            is_over_node = stage.is_over_node;
             seen
         });
         let seen = shown.inner;
+        if is_over_node && ui.rect_contains_pointer(rect) {
+            navigate(&mut places.view, ui, rect);
+        }
         if let Some(selected) = shown.selection_changed {
             let now: BTreeSet<NodeId> =
                 cards.all.iter().filter(|card| selected.contains(&card.key)).map(|card| card.id).collect();
@@ -247,6 +258,7 @@ impl Canvas {
             zoom: 1.0 / self.to_canvas.scaling.max(1e-3),
             dark: ui.visuals().dark_mode,
             pointer,
+            is_over_node: false,
             band: self.pressed.zip(pointer).map(|(from, to)| Rect::from_two_pos(from, to)),
         }
     }
@@ -276,6 +288,7 @@ impl Canvas {
                     band.expand(REACH).intersects(rect) || context.view.selection.contains(&card.id)
                 });
             let is_near = stage.pointer.is_some_and(|pointer| rect.expand(REACH).contains(pointer));
+            stage.is_over_node |= is_near && stage.pointer.is_some_and(|pointer| rect.contains(pointer));
             if !(is_held || is_seen && (is_near || !is_afar)) {
                 if is_seen {
                     painted.push(index);
@@ -379,13 +392,7 @@ impl Canvas {
     }
 
     /// Colours each socket by its type, and names it for those who do not see it.
-    fn paint_sockets<T>(
-        &self,
-        ui: &egui::Ui,
-        response: &egui_graph::node::NodeResponse<T>,
-        card: &Card,
-        dark: bool,
-    ) {
+    fn paint_sockets<T>(&self, ui: &egui::Ui, response: &egui_graph::node::NodeResponse<T>, card: &Card, dark: bool) {
         let sockets = response.sockets();
         let named = sockets
             .inputs()
@@ -456,6 +463,23 @@ impl Canvas {
     }
 }
 
+/// Zooms with the wheel and moves with the middle button where a node is under the pointer: beside nodes the widget does.
+fn navigate(view: &mut egui_graph::View, ui: &egui::Ui, rect: Rect) {
+    let (zoom, moved, pointer) = ui.input(|i| {
+        let is_moving = i.pointer.middle_down() && !i.pointer.button_pressed(PointerButton::Middle);
+        let moved = if is_moving { i.pointer.delta() } else { egui::Vec2::ZERO };
+        (i.zoom_delta(), moved + i.smooth_scroll_delta(), i.pointer.latest_pos())
+    });
+    let Some(pointer) = pointer.filter(|_| zoom != 1.0 || moved != egui::Vec2::ZERO) else { return };
+    let seen = view.scene_rect;
+    let scale = rect.width() / seen.width().max(1e-3);
+    let wanted = (scale * zoom).clamp(ZOOM.min, ZOOM.max);
+    // What is under the pointer stays there.
+    let under = seen.min + (pointer - rect.min) / scale;
+    let corner = under - (pointer - rect.min) / wanted - moved / wanted;
+    view.scene_rect = Rect::from_min_size(corner, rect.size() / wanted);
+}
+
 /// Dots in the background, so that one sees how the canvas moves; fewer where it is seen from afar.
 fn dots(ui: &egui::Ui, stage: &Stage<'_>) {
     let doublings = (DOTS_ON_SCREEN / (DOTS * stage.zoom).max(1e-3)).log2().ceil().clamp(0.0, 8.0);
@@ -502,7 +526,8 @@ impl Places {
             let stand = self.cards.all.iter().filter(|card| !homeless.contains(&card.id));
             let stand = stand.filter_map(|card| Some(card.rect(*self.view.layout.get(&card.key)?)));
             // Below those that have a place.
-            let corner = stand.reduce(|a, b| a.union(b)).map_or(Pos2::ZERO, |all| all.left_bottom() + egui::vec2(0.0, 60.0));
+            let corner =
+                stand.reduce(|a, b| a.union(b)).map_or(Pos2::ZERO, |all| all.left_bottom() + egui::vec2(0.0, 60.0));
             for (id, place) in arrange::arrange_at(&self.cards, |id| homeless.contains(&id), corner) {
                 self.view.layout.insert(key(id), place);
             }

@@ -59,9 +59,9 @@ pub(crate) fn swap(graph: &Graph, catalogue: &Catalogue, id: NodeId) -> Result<V
     }
     let type_of = |source: &Option<Source>, input: &InputSpec| -> WireType {
         let linked = match source {
-            Some(Source::Link(link)) => graph
-                .node(link.node)
-                .and_then(|from| Some(from.kind()?.find_output(&link.output)?.1.wire)),
+            Some(Source::Link(link)) => {
+                graph.node(link.node).and_then(|from| Some(from.kind()?.find_output(&link.output)?.1.wire))
+            }
             _ => None,
         };
         linked.unwrap_or(input.wire)
