@@ -17,6 +17,7 @@ use crate::panel::data::Data;
 use crate::panel::inspector::Inspector;
 use crate::panel::palette::Palette;
 use crate::recovery::Recovery;
+use crate::reference_pictures::ReferencePictures;
 use crate::results::Results;
 use crate::shortcuts;
 use crate::view_state::{Settings, ViewState};
@@ -82,6 +83,7 @@ pub struct App {
     pub(crate) commands: Vec<Command>,
     pub(crate) asking: Option<Asking>,
     pub(crate) recovery: Recovery,
+    pub(crate) pictures: ReferencePictures,
     /// Whether unsaved work was given up by an answer.
     pub(crate) is_sure: bool,
     pub(crate) after_saving: Option<FileCommand>,
@@ -131,6 +133,7 @@ impl App {
             commands: Vec::new(),
             asking: None,
             recovery: Recovery::begin(options.recovery.as_deref()),
+            pictures: ReferencePictures::default(),
             is_sure: false,
             after_saving: None,
             may_close: false,
@@ -161,6 +164,11 @@ impl App {
     /// What the evaluation gave.
     pub fn results(&self) -> &Results {
         &self.results
+    }
+
+    /// Whether reference pictures are still read.
+    pub fn reads_pictures(&self) -> bool {
+        self.pictures.is_busy()
     }
 
     /// Asks for something, as a widget does. It happens in the next frame.
@@ -314,6 +322,7 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         let context = ui.ctx().clone();
         self.listen(&context);
+        self.pictures.update(&context, &self.document);
         self.closing(&context);
         if self.asking.is_none() {
             let over = self.is_over_canvas(&context);

@@ -1,11 +1,13 @@
 //! What widgets ask for. They change nothing themselves: the application applies commands in one place.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use maquette_graph::{Edit, NodeId};
+use maquette_graph::{Edit, NodeId, ReferencePicture};
 
 use crate::canvas::arrange::Alignment;
 use crate::view_state::Tool;
+use crate::viewport::camera::Direction;
 
 /// Something that was asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,6 +55,17 @@ pub enum GraphCommand {
         /// The same for all edits of one gesture, such as a drag.
         gesture: Option<String>,
     },
+    /// Puts these pictures behind the sketches of the whole graph.
+    References {
+        /// What the step is called.
+        name: String,
+        /// All of them.
+        pictures: Vec<ReferencePicture>,
+        /// The same for all edits of one gesture.
+        gesture: Option<String>,
+    },
+    /// Changes the picked strokes of the active sketch, or all of them where none is picked.
+    Strokes(StrokeDeed),
     /// Ends a gesture.
     EndGesture,
     /// Undoes the last step.
@@ -124,6 +137,40 @@ pub enum GraphCommand {
     Swap,
 }
 
+/// What is done with whole strokes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StrokeDeed {
+    /// A copy of each, beside it.
+    Duplicate,
+    /// A mirror image of each, across the middle of the body.
+    Mirror,
+    /// They run the other way.
+    Reverse,
+    /// Open ones are closed; where all are closed, they are opened.
+    Close,
+    /// Two open ones become one, at the ends that are nearest to each other.
+    Join,
+    /// They go.
+    Delete,
+}
+
+impl StrokeDeed {
+    /// All of them, in the order of the bar.
+    pub const ALL: [Self; 6] = [Self::Duplicate, Self::Mirror, Self::Reverse, Self::Close, Self::Join, Self::Delete];
+
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Duplicate => "Duplicate",
+            Self::Mirror => "Mirror",
+            Self::Reverse => "Reverse",
+            Self::Close => "Close",
+            Self::Join => "Join",
+            Self::Delete => "Delete",
+        }
+    }
+}
+
 /// What a new node is linked to.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum NewLink {
@@ -151,6 +198,8 @@ pub enum NewLink {
 pub enum ViewCommand {
     /// Selects nodes; the last one becomes the active one.
     Select(Vec<NodeId>),
+    /// Picks strokes of the active sketch, by their place.
+    PickStrokes(BTreeSet<usize>),
     /// Selects all nodes of the canvas.
     SelectAll,
     /// Selects a node of the whole graph, named as messages name it.
@@ -209,6 +258,13 @@ pub enum FileCommand {
         /// Extensions that are offered, without the dot.
         extensions: Vec<String>,
     },
+    /// Puts a picture behind the strokes of a view.
+    AddReference {
+        /// The view.
+        view: Direction,
+        /// The picture's file.
+        path: PathBuf,
+    },
     /// Asks where to write the results.
     ExportDialog,
     /// Writes the results in the format of the file's ending.
@@ -236,6 +292,8 @@ pub enum FileTarget {
     },
     /// A parameter of the graph on the canvas.
     Parameter(String),
+    /// A new reference picture in this view.
+    Reference(Direction),
 }
 
 impl From<GraphCommand> for Command {

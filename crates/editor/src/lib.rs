@@ -17,6 +17,7 @@ mod evaluation_worker;
 mod naming;
 mod panel;
 mod recovery;
+mod reference_pictures;
 pub mod results;
 mod shortcuts;
 mod signs;

@@ -3,7 +3,7 @@
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use crate::canvas::arrange::Alignment;
-use crate::command::{Command, FileCommand, GraphCommand, ViewCommand};
+use crate::command::{Command, FileCommand, GraphCommand, StrokeDeed, ViewCommand};
 use crate::view_state::{Tool, ViewState};
 
 /// A key and what it does.
@@ -56,7 +56,10 @@ pub(crate) const SHORTCUTS: &[Shortcut] = &[
     shortcut(1, BOTH, Key::G, "ungroup", |_| Some(GraphCommand::Ungroup.into())),
     shortcut(1, COMMAND, Key::G, "group", |_| Some(GraphCommand::Group.into())),
     shortcut(1, COMMAND, Key::Backspace, "dissolve", |_| Some(GraphCommand::Dissolve.into())),
-    shortcut(1, NONE, Key::Delete, "delete", |_| Some(GraphCommand::Delete.into())),
+    shortcut(1, NONE, Key::Delete, "delete: picked strokes, or else the selected nodes", |view| {
+        let strokes = view.tool == Tool::Transform && !view.picked_strokes.is_empty();
+        Some(if strokes { GraphCommand::Strokes(StrokeDeed::Delete).into() } else { GraphCommand::Delete.into() })
+    }),
     shortcut(1, NONE, Key::M, "mute", |_| Some(GraphCommand::Mute.into())),
     shortcut(1, NONE, Key::D, "display", |view| Some(ViewCommand::Display(view.active?).into())),
     shortcut(1, NONE, Key::P, "pin", |view| Some(ViewCommand::Pin(view.active?).into())),
@@ -76,6 +79,9 @@ pub(crate) const SHORTCUTS: &[Shortcut] = &[
     shortcut(2, NONE, Key::Q, "select", |_| Some(ViewCommand::Take(Tool::Select).into())),
     shortcut(2, NONE, Key::S, "sketch", |_| Some(ViewCommand::Take(Tool::Sketch).into())),
     shortcut(2, NONE, Key::W, "pull", |_| Some(ViewCommand::Take(Tool::Pull).into())),
+    shortcut(2, NONE, Key::T, "move, turn and scale strokes", |_| Some(ViewCommand::Take(Tool::Transform).into())),
+    shortcut(2, NONE, Key::K, "cut strokes", |_| Some(ViewCommand::Take(Tool::Cut).into())),
+    shortcut(2, NONE, Key::I, "place reference pictures", |_| Some(ViewCommand::Take(Tool::Picture).into())),
     shortcut(2, NONE, Key::E, "erase", |_| Some(ViewCommand::Take(Tool::Erase).into())),
     shortcut(2, NONE, Key::F, "frame selected", |_| Some(ViewCommand::FrameSelected.into())),
     shortcut(2, NONE, Key::A, "frame all", |_| Some(ViewCommand::FrameAll.into())),

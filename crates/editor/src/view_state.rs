@@ -17,13 +17,20 @@ pub enum Tool {
     Sketch,
     /// Pulls points of strokes, and their neighbours with them.
     Pull,
+    /// Moves, turns and scales whole strokes.
+    Transform,
+    /// Cuts strokes where it is drawn across them.
+    Cut,
     /// Takes away what it is drawn across.
     Erase,
+    /// Moves and scales reference pictures.
+    Picture,
 }
 
 impl Tool {
     /// All tools, in the order of the bar.
-    pub const ALL: [Self; 4] = [Self::Select, Self::Sketch, Self::Pull, Self::Erase];
+    pub const ALL: [Self; 7] =
+        [Self::Select, Self::Sketch, Self::Pull, Self::Transform, Self::Cut, Self::Erase, Self::Picture];
 
     /// What it is called.
     pub fn name(self) -> &'static str {
@@ -31,7 +38,10 @@ impl Tool {
             Self::Select => "Select",
             Self::Sketch => "Sketch",
             Self::Pull => "Pull",
+            Self::Transform => "Transform",
+            Self::Cut => "Cut",
             Self::Erase => "Erase",
+            Self::Picture => "Picture",
         }
     }
 
@@ -43,7 +53,12 @@ impl Tool {
                 "Draw in the front, side or top view; along a stroke to draw that part anew, from its end to go on"
             }
             Self::Pull => "Drag a point of a stroke; its neighbours follow within the radius",
+            Self::Transform => {
+                "Drag strokes, or the handles of their box; Shift picks several and keeps to one axis; arrow keys nudge"
+            }
+            Self::Cut => "Drag across strokes to cut them in two",
             Self::Erase => "Drag across strokes to take parts of them away",
+            Self::Picture => "Drag a reference picture; with Shift along something of known length to scale it",
         }
     }
 }
@@ -72,6 +87,10 @@ pub struct Settings {
     pub pull_radius: f64,
     /// Whether what is drawn across the middle of the body is mirrored.
     pub symmetric: bool,
+    /// Whether ends of strokes are caught by other curves and the middle of the body.
+    pub snap: bool,
+    /// The length that one draws along in a reference picture to scale it, metres.
+    pub known_length: f64,
     /// Files that were opened, the last one first.
     pub recent: Vec<std::path::PathBuf>,
 }
@@ -89,6 +108,8 @@ impl Default for Settings {
             tolerance: 0.002,
             pull_radius: 0.1,
             symmetric: false,
+            snap: true,
+            known_length: 1.0,
             recent: Vec::new(),
         }
     }
@@ -121,6 +142,8 @@ pub struct ViewState {
     pub expanded: BTreeSet<NodeId>,
     /// What the pointer does in a view.
     pub tool: Tool,
+    /// Strokes of the active sketch that are picked, by their place; none stands for all.
+    pub picked_strokes: BTreeSet<usize>,
     /// What was said last.
     pub message: Option<crate::command::Message>,
     /// Whether the keyboard sheet is open.
@@ -139,6 +162,9 @@ impl ViewState {
         if let Some(graph) = graph {
             self.selection.retain(|id| graph.node(*id).is_some());
             self.active = self.active.filter(|id| graph.node(*id).is_some());
+            if self.active.is_none() {
+                self.picked_strokes.clear();
+            }
             self.expanded.retain(|id| graph.node(*id).is_some());
         }
         self.displayed = self.displayed.filter(|id| whole.node(*id).is_some());

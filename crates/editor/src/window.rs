@@ -6,7 +6,7 @@ use egui_tiles::{Behavior, SimplificationOptions, TileId, Tiles, UiResponse};
 use crate::app::{App, is_graph};
 use crate::canvas::Canvas;
 use crate::canvas::arrange::Alignment;
-use crate::command::{Command, FileCommand, GraphCommand, NewLink, ViewCommand};
+use crate::command::{Command, FileCommand, FileTarget, GraphCommand, NewLink, StrokeDeed, ViewCommand};
 use crate::dialog;
 use crate::dock::{self, Pane};
 use crate::panel::data::Data;
@@ -15,8 +15,12 @@ use crate::panel::palette::{DraggedKind, Palette};
 use crate::panel::{PanelContext, help, history, performance, problems};
 use crate::shortcuts::keys_of;
 use crate::view_state::Tool;
+use crate::viewport::camera::Direction;
 use crate::viewport::picture::Shading;
 use crate::viewport::{Graphics, ViewPane};
+
+/// What names of pictures end with.
+const PICTURES: [&str; 3] = ["png", "jpg", "jpeg"];
 
 impl App {
     pub(crate) fn show(&mut self, ui: &mut Ui) {
@@ -33,12 +37,27 @@ impl App {
         if self.view.keys && !help::keys(ui) {
             self.view.keys = false;
         }
+        self.drop_pictures(ui);
         let dropped = ui.input(|i| {
             let paths = i.raw.dropped_files.iter().map(|file| file.path());
             paths.into_iter().find(|path| is_graph(path)).map(std::path::Path::to_owned)
         });
         if let Some(path) = dropped {
             self.commands.push(FileCommand::Open(path).into());
+        }
+    }
+
+    /// Pictures that were dropped on a view become its reference pictures.
+    fn drop_pictures(&mut self, ui: &Ui) {
+        let paths: Vec<_> = ui.input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
+        let pictures = paths.into_iter().filter(|path| {
+            path.extension().is_some_and(|e| PICTURES.iter().any(|known| e.eq_ignore_ascii_case(known)))
+        });
+        for path in pictures {
+            match self.hovered {
+                Some(Pane::View(view)) => self.commands.push(FileCommand::AddReference { view, path }.into()),
+                _ => self.complain("drop a picture on the front, side or top view to sketch over it"),
+            }
         }
     }
 
@@ -52,6 +71,7 @@ impl App {
                 results: &self.results,
                 view: &self.view,
                 settings: &mut self.settings,
+                pictures: &self.pictures,
                 commands: &mut self.commands,
             },
             canvas: &mut self.canvas,
@@ -188,6 +208,14 @@ impl App {
         ui.checkbox(&mut settings.maya_navigation, "Navigate as in Maya")
             .on_hover_text("Alt with the left, middle and right button; otherwise as in Blender, with the middle one");
         ui.separator();
+        ui.menu_button("Add reference picture", |ui| {
+            for view in [Direction::Front, Direction::Side, Direction::Top] {
+                let extensions = PICTURES.map(str::to_owned).to_vec();
+                let command = FileCommand::Browse { target: FileTarget::Reference(view), extensions };
+                self.item(ui, &format!("{} view…", view.name()), "", true, command);
+            }
+        });
+        ui.separator();
         self.item(ui, "Frame all", "Home", true, ViewCommand::FrameAll);
         self.item(ui, "Frame selected", "F", true, ViewCommand::FrameSelected);
     }
@@ -216,6 +244,9 @@ impl App {
                     field.on_hover_text("How far a stroke may be from the pen: larger is smoother");
                     settings.tolerance = millimetres / 1000.0;
                     ui.checkbox(&mut settings.symmetric, "symmetric").on_hover_text("Draws the mirror image too");
+                    ui.checkbox(&mut settings.snap, "snap").on_hover_text(
+                        "Ends are caught by other curves, where they cross this plane, and by the middle",
+                    );
                 }
                 Tool::Pull => {
                     ui.label("radius");
@@ -226,7 +257,22 @@ impl App {
                     field.on_hover_text("How far along the stroke neighbours follow");
                     settings.pull_radius = centimetres / 100.0;
                 }
-                Tool::Select | Tool::Erase => {
+                Tool::Transform => {
+                    for deed in StrokeDeed::ALL {
+                        if ui.button(deed.name()).clicked() {
+                            self.commands.push(GraphCommand::Strokes(deed).into());
+                        }
+                    }
+                }
+                Tool::Picture => {
+                    ui.label("length");
+                    let field = egui::DragValue::new(&mut settings.known_length).range(1e-3..=1e4).speed(0.01);
+                    let field = ui.add(field.max_decimals(4).suffix(" m"));
+                    field.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::DragValue, true, "known length"));
+                    field.on_hover_text("What Shift+dragging along something in the picture makes it measure");
+                    ui.label(RichText::new(Tool::Picture.description()).weak());
+                }
+                Tool::Select | Tool::Cut | Tool::Erase => {
                     ui.label(RichText::new(self.view.tool.description()).weak());
                 }
             }

@@ -18,6 +18,14 @@ impl App {
     pub(super) fn apply_graph(&mut self, context: &egui::Context, command: GraphCommand) {
         match command {
             GraphCommand::Edit { name, edits, gesture } => self.make(&name, edits, gesture.as_deref()),
+            GraphCommand::References { name, pictures, gesture } => {
+                let edits = vec![Edit::References(pictures)];
+                match self.document.step(&self.catalogue, &[], &name, edits, gesture.as_deref()) {
+                    Ok(()) => self.view.message = None,
+                    Err(error) => self.complain(error),
+                }
+            }
+            GraphCommand::Strokes(deed) => self.apply_strokes(deed),
             GraphCommand::EndGesture => self.document.end_gesture(),
             GraphCommand::Undo => {
                 let undone = self.document.undo(&self.catalogue);
@@ -134,7 +142,7 @@ impl App {
     }
 
     /// Makes edits of the graph on the canvas a step.
-    fn make(&mut self, name: &str, edits: Vec<Edit>, gesture: Option<&str>) {
+    pub(super) fn make(&mut self, name: &str, edits: Vec<Edit>, gesture: Option<&str>) {
         let made = self.document.step(&self.catalogue, &self.view.path, name, edits, gesture);
         match made {
             Ok(()) => self.view.message = None,

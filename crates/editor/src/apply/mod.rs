@@ -2,6 +2,7 @@
 
 mod file;
 mod graph;
+mod strokes;
 mod view;
 
 use crate::app::App;

@@ -10,9 +10,13 @@ impl App {
     pub(super) fn apply_view(&mut self, context: &egui::Context, command: ViewCommand) {
         match command {
             ViewCommand::Select(nodes) => {
+                if self.view.active != nodes.last().copied() {
+                    self.view.picked_strokes.clear();
+                }
                 self.view.active = nodes.last().copied();
                 self.view.selection = nodes.into_iter().collect();
             }
+            ViewCommand::PickStrokes(strokes) => self.view.picked_strokes = strokes,
             ViewCommand::SelectAll => {
                 self.view.selection = self.canvas_graph().nodes().map(|(id, _)| id).collect();
                 self.view.active = self.view.active.or(self.view.selection.last().copied());
@@ -78,6 +82,7 @@ impl App {
     fn leave_selection(&mut self) {
         self.view.selection = BTreeSet::new();
         self.view.active = None;
+        self.view.picked_strokes.clear();
     }
 
     /// Selects the node that messages name so, in the graph where it is.

@@ -12,6 +12,7 @@ use maquette_graph::{Catalogue, Graph, Node, NodeId};
 
 use crate::command::Command;
 use crate::document::Document;
+use crate::reference_pictures::ReferencePictures;
 use crate::results::Results;
 use crate::view_state::{Settings, ViewState};
 
@@ -22,6 +23,7 @@ pub(crate) struct PanelContext<'a> {
     pub(crate) results: &'a Results,
     pub(crate) view: &'a ViewState,
     pub(crate) settings: &'a mut Settings,
+    pub(crate) pictures: &'a ReferencePictures,
     pub(crate) commands: &'a mut Vec<Command>,
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use maquette_graph::NodeId;
+use maquette_graph::{NodeId, Stroke};
 
 use crate::drawable::{LineRole, Segment};
 use crate::panel::PanelContext;
@@ -18,7 +18,6 @@ const ACCENT: [f32; 4] = [1.0, 0.62, 0.18, 1.0];
 
 /// Colours that depend on light or dark.
 struct Palette {
-    background: [f32; 3],
     fine: [f32; 4],
     coarse: [f32; 4],
     wire: [f32; 4],
@@ -29,7 +28,6 @@ struct Palette {
 }
 
 const DARK: Palette = Palette {
-    background: [0.135, 0.145, 0.165],
     fine: [1.0, 1.0, 1.0, 0.045],
     coarse: [1.0, 1.0, 1.0, 0.12],
     wire: [0.02, 0.03, 0.05, 0.34],
@@ -39,7 +37,6 @@ const DARK: Palette = Palette {
     rail: [0.98, 0.86, 0.42, 0.95],
 };
 const LIGHT: Palette = Palette {
-    background: [0.89, 0.90, 0.92],
     fine: [0.0, 0.0, 0.0, 0.05],
     coarse: [0.0, 0.0, 0.0, 0.13],
     wire: [0.02, 0.03, 0.05, 0.34],
@@ -48,6 +45,11 @@ const LIGHT: Palette = Palette {
     section: [0.0, 0.45, 0.36, 0.8],
     rail: [0.65, 0.42, 0.0, 0.95],
 };
+
+/// What is behind everything in a view.
+pub(crate) fn background(dark: bool) -> egui::Color32 {
+    if dark { egui::Color32::from_rgb(34, 37, 42) } else { egui::Color32::from_rgb(227, 230, 235) }
+}
 
 /// Colours of the world's axes, X, Y, Z.
 pub(crate) const AXES: [[f32; 4]; 3] = [[0.86, 0.30, 0.32, 0.8], [0.46, 0.74, 0.28, 0.8], [0.30, 0.52, 0.92, 0.8]];
@@ -117,7 +119,6 @@ pub(crate) fn picture(context: &PanelContext<'_>, of: &PictureOf<'_>, grid: &Gri
         view: of.view,
         size: of.pixels,
         uniform: ViewUniform::new(of.camera, of.size, of.pixels, settings.shading),
-        background: palette.background,
         samples: of.samples,
         surfaces,
         lines,
@@ -135,22 +136,40 @@ fn faded([r, g, b, a]: [f32; 4], points: f64) -> Option<[f32; 4]> {
 fn sketches(context: &PanelContext<'_>, palette: &Palette) -> Vec<LineDraw> {
     let is_selected = |node: &NodeId| context.view.selection.contains(node);
     let draw = |target: SketchTarget| {
-        let mut segments = Vec::new();
-        for stroke in &target.strokes {
-            let place = |p: &glam::DVec2| target.plane.place(*p).as_vec3().to_array();
-            let places: Vec<[f32; 3]> = points(stroke).iter().map(place).collect();
-            segments.extend(places.windows(2).map(|pair| Segment { from: pair[0], to: pair[1] }));
-            if let (true, Some(first), Some(last)) = (stroke.closed, places.first(), places.last()) {
-                segments.push(Segment { from: *last, to: *first });
-            }
-        }
         let selected = is_selected(&target.node);
-        LineDraw {
-            source: LineSource::Own(segments),
-            colour: if selected { ACCENT } else { palette.sketch },
-            width: if selected { 3.0 } else { 1.6 },
-            on_top: selected,
-        }
+        let picked = &context.view.picked_strokes;
+        let active = context.view.active == Some(target.node) && !picked.is_empty();
+        // Of the active sketch, those strokes are thin that nothing would be done with.
+        [true, false].map(|thick| {
+            let within = |index: usize| !active || picked.contains(&index);
+            let strokes = target.strokes.iter().enumerate().filter(|(index, _)| within(*index) == thick);
+            let strokes = strokes.map(|(_, stroke)| stroke);
+            strokes_of(&target, strokes, palette, selected, thick)
+        })
     };
-    SketchTarget::all(context.graph()).map(draw).collect()
+    SketchTarget::all(context.graph()).flat_map(draw).collect()
+}
+
+fn strokes_of<'a>(
+    target: &SketchTarget,
+    strokes: impl Iterator<Item = &'a Stroke>,
+    palette: &Palette,
+    selected: bool,
+    thick: bool,
+) -> LineDraw {
+    let mut segments = Vec::new();
+    for stroke in strokes {
+        let place = |p: &glam::DVec2| target.plane.place(*p).as_vec3().to_array();
+        let places: Vec<[f32; 3]> = points(stroke).iter().map(place).collect();
+        segments.extend(places.windows(2).map(|pair| Segment { from: pair[0], to: pair[1] }));
+        if let (true, Some(first), Some(last)) = (stroke.closed, places.first(), places.last()) {
+            segments.push(Segment { from: *last, to: *first });
+        }
+    }
+    LineDraw {
+        source: LineSource::Own(segments),
+        colour: if selected { ACCENT } else { palette.sketch },
+        width: if selected && thick { 3.0 } else { 1.6 },
+        on_top: selected,
+    }
 }

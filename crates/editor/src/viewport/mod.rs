@@ -7,7 +7,10 @@ pub(crate) mod gpu;
 pub(crate) mod grid;
 pub(crate) mod pick;
 pub(crate) mod picture;
+pub(crate) mod reference;
 pub(crate) mod sketch_tool;
+pub(crate) mod snap;
+pub(crate) mod transform_tool;
 
 use std::sync::Arc;
 
@@ -19,13 +22,15 @@ use maquette_graph::NodeId;
 use crate::command::ViewCommand;
 use crate::drawable::LineRole;
 use crate::panel::PanelContext;
-use crate::sketch::target::{SketchTarget, points};
+use crate::sketch::target::{Plane, SketchTarget, points};
 use crate::view_state::Tool;
 
 use self::camera::{Camera, Direction, ViewSize};
 use self::draw::PictureOf;
 use self::grid::Grid;
+use self::reference::PictureTool;
 use self::sketch_tool::{SketchTool, ToolView};
+use self::transform_tool::TransformTool;
 
 /// What a view is to frame when it is drawn next.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -56,13 +61,25 @@ pub(crate) struct ViewPane {
     pub(crate) camera: Camera,
     pub(crate) framing: Framing,
     tool: SketchTool,
+    transform: TransformTool,
+    pictures: PictureTool,
+    /// How hard a pen presses; `None` while there is none.
+    pen: Option<f64>,
     /// What of the screen it covered in the last frame.
     pub(crate) rect: Option<egui::Rect>,
 }
 
 impl ViewPane {
     pub(crate) fn new(direction: Direction) -> Self {
-        Self { camera: Camera::new(direction), framing: Framing::All, tool: SketchTool::default(), rect: None }
+        Self {
+            camera: Camera::new(direction),
+            framing: Framing::All,
+            tool: SketchTool::default(),
+            transform: TransformTool::default(),
+            pictures: PictureTool::default(),
+            pen: None,
+            rect: None,
+        }
     }
 
     pub(crate) fn show(&mut self, ui: &mut egui::Ui, context: &mut PanelContext<'_>, graphics: Graphics) {
@@ -151,19 +168,70 @@ impl ViewPane {
         if alt {
             return;
         }
-        if response.drag_started_by(PointerButton::Primary)
-            && let Some(at) = ui.input(|i| i.pointer.press_origin())
-        {
-            self.tool.press(context, &view, at - corner);
+        let modifiers = ui.input(|i| i.modifiers);
+        if matches!(context.view.tool, Tool::Transform | Tool::Pull) && ui.rect_contains_pointer(response.rect) {
+            transform_tool::nudge(ui, context, &view);
+        }
+        let (press, at) = (ui.input(|i| i.pointer.press_origin()), response.interact_pointer_pos());
+        self.pen = pressure(ui).or(self.pen);
+        // A click does what a press and a release do.
+        let begins = response.drag_started_by(PointerButton::Primary)
+            || (response.clicked() && context.view.tool == Tool::Transform);
+        if begins && let Some(at) = press.or(at) {
+            let at = at - corner;
+            match context.view.tool {
+                Tool::Transform => self.transform.press(context, &view, at, modifiers),
+                Tool::Picture => self.pictures.press(context, &view, at, modifiers.shift),
+                _ => self.tool.press(context, &view, at),
+            }
         }
         if response.dragged_by(PointerButton::Primary)
-            && let Some(at) = response.interact_pointer_pos()
+            && let Some(at) = at
         {
-            self.tool.drag(context, &view, at - corner);
+            let at = at - corner;
+            match context.view.tool {
+                Tool::Transform => self.transform.drag(context, &view, at, modifiers),
+                Tool::Picture => self.pictures.drag(context, &view, at),
+                _ => self.tool.drag(context, &view, at, self.pen),
+            }
         }
-        if response.drag_stopped_by(PointerButton::Primary) {
+        if response.drag_stopped_by(PointerButton::Primary) || response.clicked() {
+            self.transform.release(context);
+            self.pictures.release(context);
             self.tool.release(context, &view);
+            self.pen = None;
         }
+    }
+
+    /// Where a stroke that begins or ends here is caught, and how far it may be from the pen.
+    fn pen(&self, ui: &egui::Ui, rect: egui::Rect, context: &PanelContext<'_>, view: &ToolView<'_>) {
+        let Some(pointer) = ui.input(|i| i.pointer.hover_pos()).filter(|at| rect.contains(*at)) else { return };
+        if context.view.tool != Tool::Sketch || !ui.rect_contains_pointer(rect) {
+            return;
+        }
+        let painter = ui.painter().with_clip_rect(rect);
+        let accent = egui::Color32::from_rgb(255, 160, 45);
+        #[expect(clippy::cast_possible_truncation, reason = "points of the screen")]
+        let tolerance = (context.settings.tolerance / self.camera.metres_per_point(view.size)) as f32;
+        if (2.0..400.0).contains(&tolerance) {
+            painter.circle_stroke(pointer, tolerance, egui::Stroke::new(1.0, accent.gamma_multiply(0.5)));
+        }
+        let target = sketch_tool::active_target(context);
+        let plane = target.as_ref().map(|target| target.plane).or_else(|| Plane::of_view(self.camera.direction));
+        let caught = plane.and_then(|plane| {
+            let at = view.meet(plane, pointer - rect.min)?;
+            let place = snap::caught(context, view, plane, target.as_ref().map(|target| target.node), at)?;
+            self.camera.project(view.size, plane.place(place))
+        });
+        if let Some(place) = caught {
+            painter.circle_stroke(rect.min + place, 6.0, egui::Stroke::new(2.0, accent));
+        }
+    }
+
+    /// A new reference picture in the middle of what the view shows; `None` in the free view.
+    pub(crate) fn placed(&self, file: String) -> Option<maquette_graph::ReferencePicture> {
+        let size = ViewSize::new(self.rect.map_or(egui::vec2(400.0, 400.0), |rect| rect.size()));
+        reference::placed(&self.camera, size, file)
     }
 
     fn paint(
@@ -187,6 +255,8 @@ impl ViewPane {
             );
             return;
         }
+        ui.painter().rect_filled(rect, 0.0, draw::background(ui.visuals().dark_mode));
+        reference::show(ui, rect, context, &self.camera, size);
         let scale = ui.ctx().pixels_per_point();
         #[expect(
             clippy::cast_possible_truncation,
@@ -245,6 +315,11 @@ impl ViewPane {
             let line: Vec<egui::Pos2> = drawn.iter().filter_map(|p| screen(plane.place(*p))).collect();
             painter.add(egui::Shape::line(line, egui::Stroke::new(2.5, egui::Color32::from_rgb(255, 160, 45))));
         }
+        self.pictures.show(&painter, context, screen);
+        self.pen(ui, rect, context, &view);
+        if context.view.tool == Tool::Transform {
+            TransformTool::show(&painter, corner, context, &view);
+        }
         self.number_curves(ui, rect, context, size);
         let pulling = context.view.tool == Tool::Pull;
         if let Some(target) = context.view.active.and_then(|id| SketchTarget::of(context.graph(), id))
@@ -302,6 +377,23 @@ impl ViewPane {
             }
         }
     }
+}
+
+/// How hard a pen was said to press in this frame, from 0 to 1; `None` where nothing was said, as by a mouse.
+fn pressure(ui: &egui::Ui) -> Option<f64> {
+    ui.input(|input| {
+        let force = |event: &egui::Event| match event {
+            egui::Event::Touch { force, phase, .. } => force.filter(|_| *phase != egui::TouchPhase::End),
+            _ => None,
+        };
+        input
+            .events
+            .iter()
+            .rev()
+            .find_map(force)
+            .map(f64::from)
+            .map(|force| (force.clamp(0.0, 1.0) * 1e3).round() / 1e3)
+    })
 }
 
 /// The sketch whose stroke is under the pointer.

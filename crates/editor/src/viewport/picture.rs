@@ -120,7 +120,6 @@ pub(crate) struct Picture {
     /// Pixels, neither zero.
     pub(crate) size: [u32; 2],
     pub(crate) uniform: ViewUniform,
-    pub(crate) background: [f32; 3],
     /// 4 for smooth edges, 1 for speed.
     pub(crate) samples: u32,
     pub(crate) surfaces: Vec<SurfaceDraw>,
@@ -135,7 +134,6 @@ impl Picture {
         self.size.hash(&mut hasher);
         self.samples.hash(&mut hasher);
         hasher.write(bytemuck::bytes_of(&self.uniform));
-        hasher.write(bytemuck::bytes_of(&self.background));
         for surface in &self.surfaces {
             surface.drawable.id.hash(&mut hasher);
             hasher.write(bytemuck::bytes_of(&surface.colour));

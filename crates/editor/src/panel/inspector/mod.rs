@@ -1,6 +1,7 @@
 //! The inspector: the active node's name, note and inputs, each by its kind. It is made of what kinds declare about
 //! themselves.
 
+mod references;
 mod strokes;
 mod value;
 
@@ -37,7 +38,10 @@ impl Inspector {
                     }
                     self.node(ui, context, id, node);
                 }
-                None => graph(ui, context),
+                None => {
+                    graph(ui, context);
+                    references::show(ui, context);
+                }
             }
         });
     }

@@ -142,7 +142,6 @@ impl Gpu {
             Some(multisampled) => (multisampled, Some(&target.picture)),
             None => (&target.picture, None),
         };
-        let [r, g, b] = picture.background.map(f64::from);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("view"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -150,7 +149,8 @@ impl Gpu {
                 depth_slice: None,
                 resolve_target,
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
+                    // What is behind the scene is the window's: its colour, and reference pictures.
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
                     store: wgpu::StoreOp::Store,
                 },
             })],
