@@ -228,6 +228,10 @@ pub enum ViewCommand {
     Search,
     /// Shows or hides the keyboard sheet.
     Keys,
+    /// Shows the examples and the way to the tour.
+    Welcome,
+    /// Says which version this is.
+    About,
 }
 
 /// Opening, saving, closing.
@@ -235,6 +239,8 @@ pub enum ViewCommand {
 pub enum FileCommand {
     /// An empty graph.
     New,
+    /// A small graph, and a tour through its making.
+    Tour,
     /// Asks for a file to open.
     OpenDialog,
     /// Opens a file.

@@ -30,5 +30,6 @@ mod window;
 pub use app::{App, Options, StartError, recovery_folder};
 pub use canvas::arrange::Alignment;
 pub use evaluation_worker::NodeStatus;
+pub use panel::tour::Tour;
 pub use viewport::camera::Direction;
 pub use viewport::picture::Shading;

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use maquette_graph::{Graph, NodeId};
 use serde::{Deserialize, Serialize};
 
+use crate::panel::tour::Tour;
 use crate::viewport::picture::Shading;
 
 /// What the pointer does in a view.
@@ -93,6 +94,10 @@ pub struct Settings {
     pub known_length: f64,
     /// Files that were opened, the last one first.
     pub recent: Vec<std::path::PathBuf>,
+    /// Whether the welcome was seen.
+    pub welcomed: bool,
+    /// Whether the tour was taken to its end.
+    pub toured: bool,
 }
 
 impl Default for Settings {
@@ -111,6 +116,8 @@ impl Default for Settings {
             snap: true,
             known_length: 1.0,
             recent: Vec::new(),
+            welcomed: false,
+            toured: false,
         }
     }
 }
@@ -148,6 +155,12 @@ pub struct ViewState {
     pub message: Option<crate::command::Message>,
     /// Whether the keyboard sheet is open.
     pub keys: bool,
+    /// Whether the examples and the tour are offered.
+    pub welcome: bool,
+    /// Whether it is said which version this is.
+    pub about: bool,
+    /// Where the artist is in the tour; `None` outside of it.
+    pub tour: Option<Tour>,
 }
 
 impl ViewState {

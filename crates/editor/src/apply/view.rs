@@ -63,7 +63,7 @@ impl App {
             ViewCommand::FrameSelected => self.views.iter_mut().for_each(|view| view.framing = Framing::Selected),
             ViewCommand::Maximise => self.toggle_maximised(context),
             ViewCommand::Stop => {
-                if self.results.progress().is_some() {
+                if !self.close_front() && self.results.progress().is_some() {
                     self.worker.stop();
                     self.tell("stopped: the next change evaluates again");
                 }
@@ -76,7 +76,17 @@ impl App {
                 }
             }
             ViewCommand::Keys => self.view.keys = !self.view.keys,
+            ViewCommand::Welcome => self.view.welcome = true,
+            ViewCommand::About => self.view.about = !self.view.about,
         }
+    }
+
+    /// Closes what stands before the panels; says whether something did.
+    fn close_front(&mut self) -> bool {
+        let view = &mut self.view;
+        self.settings.welcomed |= view.welcome;
+        let open = [&mut view.keys, &mut view.about, &mut view.welcome].into_iter().find(|open| **open);
+        open.map(|open| *open = false).is_some()
     }
 
     fn leave_selection(&mut self) {
