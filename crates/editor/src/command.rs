@@ -133,6 +133,10 @@ pub enum GraphCommand {
     ArrangeSelected,
     /// Lines the selected nodes up, or spreads them.
     Align(Alignment),
+    /// Puts a frame around the selected nodes.
+    Frame,
+    /// Collapses the selected nodes, or the contrary where all are.
+    Collapse,
     /// Lets the first two inputs of the active node change places.
     Swap,
 }
