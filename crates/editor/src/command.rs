@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use maquette_graph::{Edit, NodeId, ReferencePicture};
 
 use crate::canvas::arrange::Alignment;
-use crate::view_state::Tool;
+use crate::view_state::{PickedRow, Tool};
 use crate::viewport::camera::Direction;
 
 /// Something that was asked for.
@@ -236,6 +236,8 @@ pub enum ViewCommand {
     Welcome,
     /// Says which version this is.
     About,
+    /// Shows what a row of a table speaks of in the views, or nothing.
+    PickRow(Option<PickedRow>),
 }
 
 /// Opening, saving, closing.

@@ -132,6 +132,17 @@ impl Settings {
     }
 }
 
+/// A row of a table that a node of the whole graph reported.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PickedRow {
+    /// The node.
+    pub node: NodeId,
+    /// The table's name.
+    pub table: String,
+    /// The row, as it was reported, counted from 0.
+    pub row: usize,
+}
+
 /// How one looks at the document.
 #[derive(Debug, Default)]
 pub struct ViewState {
@@ -159,6 +170,8 @@ pub struct ViewState {
     pub welcome: bool,
     /// Whether it is said which version this is.
     pub about: bool,
+    /// The row of a table that the views show.
+    pub picked_row: Option<PickedRow>,
     /// Where the artist is in the tour; `None` outside of it.
     pub tour: Option<Tour>,
 }
@@ -180,6 +193,9 @@ impl ViewState {
             }
             self.expanded.retain(|id| graph.node(*id).is_some());
         }
+        // It is the active node's, and goes with it.
+        let (path, active) = (&self.path, self.active);
+        self.picked_row = self.picked_row.take().filter(|picked| path.is_empty() && active == Some(picked.node));
         self.displayed = self.displayed.filter(|id| whole.node(*id).is_some());
         self.pinned.retain(|id| whole.node(*id).is_some());
     }

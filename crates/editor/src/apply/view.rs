@@ -76,6 +76,7 @@ impl App {
                 }
             }
             ViewCommand::Keys => self.view.keys = !self.view.keys,
+            ViewCommand::PickRow(row) => self.view.picked_row = row,
             ViewCommand::Welcome => self.view.welcome = true,
             ViewCommand::About => self.view.about = !self.view.about,
         }

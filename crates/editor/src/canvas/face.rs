@@ -30,10 +30,18 @@ fn status_colour(status: Option<&NodeStatus>, visuals: &egui::Visuals) -> Color3
         None => visuals.weak_text_color(),
         Some(NodeStatus::Running(_)) => visuals.hyperlink_color,
         Some(NodeStatus::Done(_) | NodeStatus::Hit) if visuals.dark_mode => Color32::from_rgb(110, 200, 120),
-        Some(NodeStatus::Done(_) | NodeStatus::Hit) => Color32::from_rgb(20, 120, 50),
+        Some(NodeStatus::Done(_) | NodeStatus::Hit) => Color32::from_rgb(14, 102, 42),
         Some(NodeStatus::Failed { .. }) => visuals.error_fg_color,
         Some(NodeStatus::Waiting(_) | NodeStatus::Stopped) => visuals.warn_fg_color,
     }
+}
+
+/// The colours of all that there is to say about how it stands with a node.
+#[cfg(test)]
+pub(crate) fn status_colours(visuals: &egui::Visuals) -> [Color32; 5] {
+    let failed = NodeStatus::Failed { port: None, message: String::new() };
+    let all = [None, Some(NodeStatus::Running(0.5)), Some(NodeStatus::Hit), Some(failed), Some(NodeStatus::Stopped)];
+    all.map(|status| status_colour(status.as_ref(), visuals))
 }
 
 /// Words for how it stands with a node.

@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use egui::{PointerButton, Pos2, Rect, Sense};
 use egui_graph::node::EdgeEvent;
-use maquette_graph::{Edit, Graph, NodeId};
+use maquette_graph::{Edit, Graph, Node, NodeId};
 
 use crate::command::{GraphCommand, NewLink, ViewCommand};
 use crate::panel::PanelContext;
@@ -307,7 +307,7 @@ impl Canvas {
                 if is_seen {
                     painted.push(index);
                     let response = ui.interact(rect, ui.id().with(("painted", card.id)), Sense::click());
-                    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, node.name()));
+                    response.widget_info(|| named(node, context.view.selection.contains(&card.id)));
                     if response.clicked() {
                         context.ask(ViewCommand::Select(vec![card.id]));
                     }
@@ -365,6 +365,12 @@ impl Canvas {
                 }
             }
             None => {}
+        }
+        let selected = context.view.selection.contains(&id);
+        response.widget_info(|| named(node, selected));
+        // By the keyboard: of a click by the pointer the widget knows.
+        if response.clicked() && ui.input(|i| !i.pointer.any_released()) {
+            context.ask(ViewCommand::Select(vec![id]));
         }
         if response.double_clicked() && node.body().is_some_and(|body| body.graph().is_some()) {
             context.ask(ViewCommand::Enter(id));
@@ -495,6 +501,11 @@ fn navigate(view: &mut egui_graph::View, ui: &egui::Ui, rect: Rect) {
     let under = seen.min + (pointer - rect.min) / scale;
     let corner = under - (pointer - rect.min) / wanted - moved / wanted;
     view.scene_rect = Rect::from_min_size(corner, rect.size() / wanted);
+}
+
+/// What a node is called for those who do not see it.
+fn named(node: &Node, selected: bool) -> egui::WidgetInfo {
+    egui::WidgetInfo::selected(egui::WidgetType::Button, true, selected, format!("node {}", node.name()))
 }
 
 /// Dots in the background, so that one sees how the canvas moves; fewer where it is seen from afar.

@@ -115,6 +115,7 @@ pub(crate) fn picture(context: &PanelContext<'_>, of: &PictureOf<'_>, grid: &Gri
     if settings.curves {
         lines.extend(sketches(context, palette));
     }
+    lines.extend(picked_row(context));
     Picture {
         view: of.view,
         size: of.pixels,
@@ -123,6 +124,18 @@ pub(crate) fn picture(context: &PanelContext<'_>, of: &PictureOf<'_>, grid: &Gri
         surfaces,
         lines,
     }
+}
+
+/// What the picked row of the data panel speaks of, thick and in front.
+fn picked_row(context: &PanelContext<'_>) -> Option<LineDraw> {
+    let picked = context.view.picked_row.as_ref().filter(|_| context.is_outermost())?;
+    let node = context.document.graph().node(picked.node)?;
+    let table = context.results.report(picked.node)?.tables.iter().find(|table| table.name == picked.table)?;
+    let shown = context.results.shown().iter().find(|shown| shown.node == picked.node)?;
+    let drawables: Vec<_> = shown.drawables.iter().map(|drawable| &**drawable).collect();
+    let segments = super::picked_row::segments(&drawables, node, table, picked.row);
+    let own = LineDraw { source: LineSource::Own(segments), colour: ACCENT, width: 4.5, on_top: true };
+    Some(own).filter(|own| matches!(&own.source, LineSource::Own(segments) if !segments.is_empty()))
 }
 
 /// The colour of edges that are so many points long on the screen: where they would fill the surface, it is better without.

@@ -6,6 +6,7 @@ pub(crate) mod gizmo;
 pub(crate) mod gpu;
 pub(crate) mod grid;
 pub(crate) mod pick;
+mod picked_row;
 pub(crate) mod picture;
 pub(crate) mod reference;
 pub(crate) mod sketch_tool;
