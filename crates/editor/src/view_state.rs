@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use maquette_graph::{Graph, NodeId};
 use serde::{Deserialize, Serialize};
 
+use crate::drawable::Detail;
 use crate::viewport::picture::Shading;
 
 /// What the pointer does in a view.
@@ -69,6 +70,8 @@ impl Tool {
 pub struct Settings {
     /// How surfaces are looked at.
     pub shading: Shading,
+    /// How finely exact surfaces are shown.
+    pub detail: Detail,
     /// Whether edges are drawn over them.
     pub wire: bool,
     /// Whether the grid is drawn.
@@ -99,6 +102,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             shading: Shading::default(),
+            detail: Detail::default(),
             wire: true,
             grid: true,
             curves: true,

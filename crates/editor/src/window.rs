@@ -8,6 +8,7 @@ use crate::canvas::Canvas;
 use crate::command::{Command, FileCommand, FileTarget, GraphCommand, NewLink, StrokeDeed, ViewCommand};
 use crate::dialog;
 use crate::dock::{self, Pane};
+use crate::drawable::Detail;
 use crate::panel::data::Data;
 use crate::panel::inspector::Inspector;
 use crate::panel::palette::{DraggedKind, Palette};
@@ -184,6 +185,11 @@ impl App {
         }
         ui.separator();
         let settings = &mut self.settings;
+        ui.menu_button("Detail of exact surfaces", |ui| {
+            for detail in Detail::ALL {
+                ui.radio_value(&mut settings.detail, detail, detail.name());
+            }
+        });
         ui.checkbox(&mut settings.wire, "Edges");
         ui.checkbox(&mut settings.curves, "Curves");
         ui.checkbox(&mut settings.sections, "Sections and rails");

@@ -8,7 +8,7 @@ use crate::drawable::{LineRole, Segment};
 use crate::panel::PanelContext;
 use crate::sketch::target::{SketchTarget, points};
 
-use super::camera::{Camera, ViewSize};
+use super::camera::{Camera, Direction, ViewSize};
 use super::grid::Grid;
 use super::picture::{LineDraw, LineSource, Picture, Shading, SurfaceDraw, ViewUniform};
 
@@ -89,7 +89,11 @@ pub(crate) fn picture(context: &PanelContext<'_>, of: &PictureOf<'_>, grid: &Gri
         for drawable in &shown.drawables {
             let colour = drawable.colour.unwrap_or(CLAY);
             if let Some(surface) = drawable.surface.as_ref().filter(|_| is_drawn) {
-                let wanted = settings.wire && settings.shading != Shading::Zebra;
+                let wanted = match settings.shading {
+                    Shading::Facets => true,
+                    Shading::Zebra | Shading::Silhouette => false,
+                    _ => settings.wire,
+                };
                 surfaces.push(SurfaceDraw {
                     drawable: drawable.clone(),
                     colour,
@@ -113,7 +117,7 @@ pub(crate) fn picture(context: &PanelContext<'_>, of: &PictureOf<'_>, grid: &Gri
         }
     }
     if settings.curves {
-        lines.extend(sketches(context, palette));
+        lines.extend(sketches(context, palette, of.camera.direction));
     }
     Picture {
         view: of.view,
@@ -133,7 +137,7 @@ fn faded([r, g, b, a]: [f32; 4], points: f64) -> Option<[f32; 4]> {
 }
 
 /// The strokes of the graph, straight from the document: they follow the pen without waiting for anything.
-fn sketches(context: &PanelContext<'_>, palette: &Palette) -> Vec<LineDraw> {
+fn sketches(context: &PanelContext<'_>, palette: &Palette, direction: Direction) -> Vec<LineDraw> {
     let is_selected = |node: &NodeId| context.view.selection.contains(node);
     let draw = |target: SketchTarget| {
         let selected = is_selected(&target.node);
@@ -144,7 +148,10 @@ fn sketches(context: &PanelContext<'_>, palette: &Palette) -> Vec<LineDraw> {
             let within = |index: usize| !active || picked.contains(&index);
             let strokes = target.strokes.iter().enumerate().filter(|(index, _)| within(*index) == thick);
             let strokes = strokes.map(|(_, stroke)| stroke);
-            strokes_of(&target, strokes, palette, selected, thick)
+            let mut lines = strokes_of(&target, strokes, palette, selected, thick);
+            // What was drawn in this view is seen through everything, as it can be picked.
+            lines.on_top |= target.plane.view == direction;
+            lines
         })
     };
     SketchTarget::all(context.graph()).flat_map(draw).collect()

@@ -5,6 +5,7 @@ pub(crate) mod draw;
 pub(crate) mod gizmo;
 pub(crate) mod gpu;
 pub(crate) mod grid;
+pub(crate) mod outline;
 pub(crate) mod pick;
 pub(crate) mod picture;
 pub(crate) mod reference;
@@ -28,6 +29,8 @@ use crate::view_state::Tool;
 use self::camera::{Camera, Direction, ViewSize};
 use self::draw::PictureOf;
 use self::grid::Grid;
+use self::outline::OutlineError;
+use self::picture::Shading;
 use self::reference::PictureTool;
 use self::sketch_tool::{SketchTool, ToolView};
 use self::transform_tool::TransformTool;
@@ -63,6 +66,7 @@ pub(crate) struct ViewPane {
     tool: SketchTool,
     transform: TransformTool,
     pictures: PictureTool,
+    outline: OutlineError,
     /// How hard a pen presses; `None` while there is none.
     pen: Option<f64>,
     /// What of the screen it covered in the last frame.
@@ -77,6 +81,7 @@ impl ViewPane {
             tool: SketchTool::default(),
             transform: TransformTool::default(),
             pictures: PictureTool::default(),
+            outline: OutlineError::default(),
             pen: None,
             rect: None,
         }
@@ -97,6 +102,9 @@ impl ViewPane {
         self.navigate(ui, &response, context, size);
         self.use_tool(ui, &response, context, size);
         let grid = Grid::new(&self.camera, size);
+        if context.settings.shading == Shading::Silhouette {
+            self.outline.update(context, direction);
+        }
         self.paint(ui, rect, context, graphics, size, &grid);
         self.overlay(ui, rect, context, size, &grid);
     }
@@ -272,7 +280,11 @@ impl ViewPane {
             dark: ui.visuals().dark_mode,
             samples: if graphics == Graphics::Smooth && context.settings.smooth_edges { 4 } else { 1 },
         };
-        let picture = Arc::new(draw::picture(context, &of, grid));
+        let mut picture = draw::picture(context, &of, grid);
+        if context.settings.shading == Shading::Silhouette && Plane::of_view(self.camera.direction).is_some() {
+            picture.lines.extend(self.outline.lines());
+        }
+        let picture = Arc::new(picture);
         ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, gpu::PaintPicture(picture)));
     }
 
@@ -304,6 +316,10 @@ impl ViewPane {
                 font.clone(),
                 weak,
             );
+        }
+        if context.settings.shading == Shading::Silhouette && Plane::of_view(self.camera.direction).is_some() {
+            let place = rect.left_top() + egui::vec2(10.0, 42.0);
+            painter.text(place, egui::Align2::LEFT_TOP, &self.outline.words, font.clone(), text);
         }
         if context.results.is_late() && !context.results.shown().is_empty() {
             let place = rect.right_bottom() + egui::vec2(-10.0, -8.0);
