@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use maquette_graph::{Edit, NodeId, ReferencePicture};
+use maquette_graph::{Edit, NodeId, ReferencePicture, Stroke};
 
 use crate::view_state::Tool;
 use crate::viewport::camera::Direction;
@@ -62,6 +62,13 @@ pub enum GraphCommand {
         pictures: Vec<ReferencePicture>,
         /// The same for all edits of one gesture.
         gesture: Option<String>,
+    },
+    /// Adds a node that selects of the active mesh by hand: by a loop drawn in the plane of that name, or by painting.
+    SelectByHand {
+        /// The node that gives the mesh, and its output.
+        mesh: (NodeId, String),
+        /// The plane and the loop; `None` to paint.
+        strokes: Option<(&'static str, Stroke)>,
     },
     /// Changes the picked strokes of the active sketch, or all of them where none is picked.
     Strokes(StrokeDeed),

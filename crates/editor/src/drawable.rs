@@ -122,6 +122,8 @@ pub(crate) struct Drawable {
     pub(crate) id: u64,
     pub(crate) surface: Option<Surface>,
     pub(crate) lines: Vec<Line>,
+    /// Whether it is a selected part of a mesh, to be shown over that.
+    pub(crate) is_selection: bool,
     /// sRGB with alpha, as the document says; `None` where it says nothing.
     pub(crate) colour: Option<[f32; 4]>,
     /// Lowest and highest coordinates; `None` where nothing is drawn.
@@ -204,7 +206,8 @@ fn drawable(value: &Value, depiction: Depiction) -> Option<Drawable> {
 /// What is selected of the mesh, cut where weights pass 0.5.
 fn selected_part(selection: &wire::Selection, depiction: Depiction) -> Option<Drawable> {
     let [selected, _] = split(&selection.mesh, &selection.weights).ok()?;
-    (selected.polygon_count() > 0).then(|| of_mesh(&selected, None, depiction))
+    let part = || Drawable { is_selection: true, ..of_mesh(&selected, None, depiction) };
+    (selected.polygon_count() > 0).then(part)
 }
 
 /// Sections that are series, as lines through this many of their points.
@@ -220,6 +223,7 @@ fn of_series(sections: &wire::EllipticSections) -> Drawable {
     };
     Drawable {
         id: fresh_id(),
+        is_selection: false,
         surface: None,
         lines: sampled.iter().map(line).collect(),
         colour: None,
@@ -286,6 +290,7 @@ fn of_mesh(mesh: &Mesh, material: Option<&Material>, depiction: Depiction) -> Dr
         Surface { vertices: vertices.collect(), triangles, wire, edge_length, curvature_scale: scale as f32, outlines };
     Drawable {
         id: fresh_id(),
+        is_selection: false,
         bounds: bounds((0..mesh.corners().len()).map(place)),
         surface: Some(surface),
         lines: Vec::new(),
@@ -310,6 +315,7 @@ fn of_curves(curves: &[Curve], colour: Option<[f64; 4]>) -> Drawable {
     };
     Drawable {
         id: fresh_id(),
+        is_selection: false,
         surface: None,
         lines: curves.iter().map(line).collect(),
         colour: colour.map(|colour| colour.map(|component| component as f32)),
@@ -328,6 +334,7 @@ fn of_sections(sections: &maquette_geometry::sections::Sections) -> Drawable {
     });
     Drawable {
         id: fresh_id(),
+        is_selection: false,
         surface: None,
         lines: rows.chain(rails).collect(),
         colour: None,

@@ -68,6 +68,8 @@ pub(crate) const SHORTCUTS: &[Shortcut] = &[
     shortcut(2, NONE, Key::W, "pull", |_| Some(ViewCommand::Take(Tool::Pull).into())),
     shortcut(2, NONE, Key::T, "move, turn and scale strokes", |_| Some(ViewCommand::Take(Tool::Transform).into())),
     shortcut(2, NONE, Key::K, "cut strokes", |_| Some(ViewCommand::Take(Tool::Cut).into())),
+    shortcut(2, NONE, Key::O, "select of a mesh by a loop", |_| Some(ViewCommand::Take(Tool::Lasso).into())),
+    shortcut(2, NONE, Key::B, "select of a mesh with a brush", |_| Some(ViewCommand::Take(Tool::Paint).into())),
     shortcut(2, NONE, Key::I, "place reference pictures", |_| Some(ViewCommand::Take(Tool::Picture).into())),
     shortcut(2, NONE, Key::E, "erase", |_| Some(ViewCommand::Take(Tool::Erase).into())),
     shortcut(2, NONE, Key::F, "frame selected", |_| Some(ViewCommand::FrameSelected.into())),

@@ -264,7 +264,16 @@ impl App {
                     field.on_hover_text("What Shift+dragging along something in the picture makes it measure");
                     ui.label(RichText::new(Tool::Picture.description()).weak());
                 }
-                Tool::Select | Tool::Cut | Tool::Erase => {
+                Tool::Paint => {
+                    ui.label("brush");
+                    let mut centimetres = settings.brush * 100.0;
+                    let field = egui::DragValue::new(&mut centimetres).range(0.01..=1000.0).speed(0.05).suffix(" cm");
+                    let field = ui.add(field);
+                    field.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::DragValue, true, "brush"));
+                    field.on_hover_text("Radius of the brush");
+                    settings.brush = centimetres / 100.0;
+                }
+                Tool::Select | Tool::Cut | Tool::Erase | Tool::Lasso => {
                     ui.label(RichText::new(self.view.tool.description()).weak());
                 }
             }

@@ -88,7 +88,10 @@ pub(crate) fn picture(context: &PanelContext<'_>, of: &PictureOf<'_>, grid: &Gri
         let is_active = active == Some(shown.node);
         for drawable in &shown.drawables {
             let colour = drawable.colour.unwrap_or(CLAY);
-            if let Some(surface) = drawable.surface.as_ref().filter(|_| is_drawn) {
+            // A selection is shown over its mesh while its node is looked at.
+            let over = drawable.is_selection && is_active;
+            let colour = if over { ACCENT } else { colour };
+            if let Some(surface) = drawable.surface.as_ref().filter(|_| is_drawn || over) {
                 let wanted = match settings.shading {
                     Shading::Facets => true,
                     Shading::Zebra | Shading::Silhouette => false,
@@ -99,7 +102,12 @@ pub(crate) fn picture(context: &PanelContext<'_>, of: &PictureOf<'_>, grid: &Gri
                     colour,
                     wire: faded(palette.wire, surface.edge_length / of.camera.metres_per_point(of.size))
                         .filter(|_| wanted),
-                    mark: if is_active { 0.08 } else { 0.0 },
+                    mark: match (over, is_active) {
+                        (true, _) => 0.55,
+                        (_, true) => 0.08,
+                        _ => 0.0,
+                    },
+                    forward: over,
                 });
             }
             let roles = [

@@ -5,10 +5,12 @@ pub(crate) mod draw;
 pub(crate) mod gizmo;
 pub(crate) mod gpu;
 pub(crate) mod grid;
+pub(crate) mod move_gizmo;
 pub(crate) mod outline;
 pub(crate) mod pick;
 pub(crate) mod picture;
 pub(crate) mod reference;
+pub(crate) mod selection_tool;
 pub(crate) mod sketch_tool;
 pub(crate) mod snap;
 pub(crate) mod transform_tool;
@@ -29,9 +31,11 @@ use crate::view_state::Tool;
 use self::camera::{Camera, Direction, ViewSize};
 use self::draw::PictureOf;
 use self::grid::Grid;
+use self::move_gizmo::MoveGizmo;
 use self::outline::OutlineError;
 use self::picture::Shading;
 use self::reference::PictureTool;
+use self::selection_tool::SelectionTool;
 use self::sketch_tool::{SketchTool, ToolView};
 use self::transform_tool::TransformTool;
 
@@ -67,6 +71,8 @@ pub(crate) struct ViewPane {
     transform: TransformTool,
     pictures: PictureTool,
     outline: OutlineError,
+    moves: MoveGizmo,
+    selecting: SelectionTool,
     /// How hard a pen presses; `None` while there is none.
     pen: Option<f64>,
     /// What of the screen it covered in the last frame.
@@ -82,6 +88,8 @@ impl ViewPane {
             transform: TransformTool::default(),
             pictures: PictureTool::default(),
             outline: OutlineError::default(),
+            moves: MoveGizmo::default(),
+            selecting: SelectionTool::default(),
             pen: None,
             rect: None,
         }
@@ -162,6 +170,22 @@ impl ViewPane {
         let alt = ui.input(|i| i.modifiers.alt);
         let view = ToolView { camera: &self.camera, size };
         if context.view.tool == Tool::Select {
+            let exact = ui.input(|i| i.modifiers.shift);
+            if response.drag_started_by(PointerButton::Primary)
+                && !alt
+                && let Some(at) = ui.input(|i| i.pointer.press_origin())
+            {
+                self.moves.press(context, &view, at - corner);
+            }
+            if response.dragged_by(PointerButton::Primary)
+                && self.moves.is_held()
+                && let Some(at) = response.interact_pointer_pos()
+            {
+                self.moves.drag(context, &view, at - corner, exact);
+            }
+            if response.drag_stopped_by(PointerButton::Primary) {
+                self.moves.release(context);
+            }
             if response.clicked()
                 && let Some(at) = response.interact_pointer_pos()
             {
@@ -184,12 +208,13 @@ impl ViewPane {
         self.pen = pressure(ui).or(self.pen);
         // A click does what a press and a release do.
         let begins = response.drag_started_by(PointerButton::Primary)
-            || (response.clicked() && context.view.tool == Tool::Transform);
+            || (response.clicked() && matches!(context.view.tool, Tool::Transform | Tool::Paint));
         if begins && let Some(at) = press.or(at) {
             let at = at - corner;
             match context.view.tool {
                 Tool::Transform => self.transform.press(context, &view, at, modifiers),
                 Tool::Picture => self.pictures.press(context, &view, at, modifiers.shift),
+                Tool::Lasso | Tool::Paint => self.selecting.press(context, &view, at, modifiers.command),
                 _ => self.tool.press(context, &view, at),
             }
         }
@@ -200,12 +225,14 @@ impl ViewPane {
             match context.view.tool {
                 Tool::Transform => self.transform.drag(context, &view, at, modifiers),
                 Tool::Picture => self.pictures.drag(context, &view, at),
+                Tool::Lasso | Tool::Paint => self.selecting.drag(context, &view, at),
                 _ => self.tool.drag(context, &view, at, self.pen),
             }
         }
         if response.drag_stopped_by(PointerButton::Primary) || response.clicked() {
             self.transform.release(context);
             self.pictures.release(context);
+            self.selecting.release(context, &view);
             self.tool.release(context, &view);
             self.pen = None;
         }
@@ -214,11 +241,19 @@ impl ViewPane {
     /// Where a stroke that begins or ends here is caught, and how far it may be from the pen.
     fn pen(&self, ui: &egui::Ui, rect: egui::Rect, context: &PanelContext<'_>, view: &ToolView<'_>) {
         let Some(pointer) = ui.input(|i| i.pointer.hover_pos()).filter(|at| rect.contains(*at)) else { return };
-        if context.view.tool != Tool::Sketch || !ui.rect_contains_pointer(rect) {
+        if !ui.rect_contains_pointer(rect) {
             return;
         }
         let painter = ui.painter().with_clip_rect(rect);
         let accent = egui::Color32::from_rgb(255, 160, 45);
+        if context.view.tool == Tool::Paint {
+            #[expect(clippy::cast_possible_truncation, reason = "points of the screen")]
+            let radius = (context.settings.brush / self.camera.metres_per_point(view.size)) as f32;
+            painter.circle_stroke(pointer, radius.clamp(2.0, 2000.0), egui::Stroke::new(1.5, accent));
+        }
+        if context.view.tool != Tool::Sketch {
+            return;
+        }
         #[expect(clippy::cast_possible_truncation, reason = "points of the screen")]
         let tolerance = (context.settings.tolerance / self.camera.metres_per_point(view.size)) as f32;
         if (2.0..400.0).contains(&tolerance) {
@@ -327,7 +362,7 @@ impl ViewPane {
         }
         let corner = rect.min;
         let screen = |place: DVec3| self.camera.project(size, place).map(|seen| corner + seen);
-        if let Some((plane, drawn)) = self.tool.drawn() {
+        for (plane, drawn) in self.tool.drawn().into_iter().chain(self.selecting.drawn()) {
             let line: Vec<egui::Pos2> = drawn.iter().filter_map(|p| screen(plane.place(*p))).collect();
             painter.add(egui::Shape::line(line, egui::Stroke::new(2.5, egui::Color32::from_rgb(255, 160, 45))));
         }
@@ -335,6 +370,10 @@ impl ViewPane {
         self.pen(ui, rect, context, &view);
         if context.view.tool == Tool::Transform {
             TransformTool::show(&painter, corner, context, &view);
+        }
+        if context.view.tool == Tool::Select {
+            let hover = ui.input(|i| i.pointer.hover_pos()).filter(|at| rect.contains(*at)).map(|at| at - corner);
+            self.moves.show(&painter, corner, context, &view, hover);
         }
         self.number_curves(ui, rect, context, size);
         let pulling = context.view.tool == Tool::Pull;

@@ -71,6 +71,8 @@ pub(crate) struct SurfaceDraw {
     pub(crate) wire: Option<[f32; 4]>,
     /// How strongly it is marked as selected, 0 to 1.
     pub(crate) mark: f32,
+    /// Whether it lies over another surface at the same place.
+    pub(crate) forward: bool,
 }
 
 /// Where lines come from.
@@ -149,6 +151,7 @@ impl Picture {
             surface.wire.is_some().hash(&mut hasher);
             hasher.write(bytemuck::bytes_of(&surface.wire.unwrap_or_default()));
             surface.mark.to_bits().hash(&mut hasher);
+            surface.forward.hash(&mut hasher);
         }
         for line in &self.lines {
             match &line.source {
