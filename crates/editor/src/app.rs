@@ -202,18 +202,12 @@ impl App {
     /// What a node of the canvas covers on the screen; for tests, because rectangles of the accessibility tree know nothing of
     /// the zoom.
     pub fn node_on_screen(&self, node: NodeId) -> Option<egui::Rect> {
-        self.canvas.node_on_screen(self.canvas_graph(), &self.view.path, node)
+        self.canvas.node_on_screen(&self.view.path, node)
     }
 
     /// Where the socket of an input of a node of the canvas is on the screen, or that of an output.
-    pub fn socket_on_screen(
-        &self,
-        context: &egui::Context,
-        node: NodeId,
-        port: &str,
-        output: bool,
-    ) -> Option<egui::Pos2> {
-        self.canvas.socket_on_screen(context, self.canvas_graph(), &self.view.path, (node, port, output))
+    pub fn socket_on_screen(&self, node: NodeId, port: &str, output: bool) -> Option<egui::Pos2> {
+        self.canvas.socket_on_screen(&self.view.path, (node, port, output))
     }
 
     pub(crate) fn is_over_canvas(&self, context: &egui::Context) -> bool {

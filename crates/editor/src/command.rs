@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use maquette_graph::{Edit, NodeId, ReferencePicture, Stroke};
 
+use crate::canvas::arrange::Alignment;
 use crate::view_state::Tool;
 use crate::viewport::camera::Direction;
 
@@ -135,6 +136,12 @@ pub enum GraphCommand {
     },
     /// Places all nodes by what they depend on.
     Arrange,
+    /// Places the selected nodes by what they depend on, where they are.
+    ArrangeSelected,
+    /// Lines the selected nodes up, or spreads them.
+    Align(Alignment),
+    /// Lets the first two inputs of the active node change places.
+    Swap,
 }
 
 /// What is done with whole strokes.

@@ -28,6 +28,7 @@ mod viewport;
 mod window;
 
 pub use app::{App, Options, StartError, recovery_folder};
+pub use canvas::arrange::Alignment;
 pub use drawable::Detail;
 pub use evaluation_worker::NodeStatus;
 pub use viewport::camera::Direction;

@@ -2,6 +2,7 @@
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
+use crate::canvas::arrange::Alignment;
 use crate::command::{Command, FileCommand, GraphCommand, StrokeDeed, ViewCommand};
 use crate::view_state::{Tool, ViewState};
 
@@ -31,6 +32,10 @@ const NONE: Modifiers = Modifiers::NONE;
 const COMMAND: Modifiers = Modifiers::COMMAND;
 const BOTH: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
+fn align(alignment: Alignment) -> Option<Command> {
+    Some(GraphCommand::Align(alignment).into())
+}
+
 /// All of them. Longer chords stand before shorter ones of the same key, which would answer first.
 pub(crate) const SHORTCUTS: &[Shortcut] = &[
     shortcut(0, COMMAND, Key::N, "new graph", |_| Some(FileCommand::New.into())),
@@ -58,7 +63,15 @@ pub(crate) const SHORTCUTS: &[Shortcut] = &[
     shortcut(1, NONE, Key::M, "mute", |_| Some(GraphCommand::Mute.into())),
     shortcut(1, NONE, Key::D, "display", |view| Some(ViewCommand::Display(view.active?).into())),
     shortcut(1, NONE, Key::P, "pin", |view| Some(ViewCommand::Pin(view.active?).into())),
+    shortcut(1, Modifiers::SHIFT, Key::L, "arrange selected nodes", |_| Some(GraphCommand::ArrangeSelected.into())),
     shortcut(1, NONE, Key::L, "arrange all nodes", |_| Some(GraphCommand::Arrange.into())),
+    shortcut(1, Modifiers::ALT, Key::ArrowLeft, "align left", |_| align(Alignment::Left)),
+    shortcut(1, Modifiers::ALT, Key::ArrowRight, "align right", |_| align(Alignment::Right)),
+    shortcut(1, Modifiers::ALT, Key::ArrowUp, "align top", |_| align(Alignment::Top)),
+    shortcut(1, Modifiers::ALT, Key::ArrowDown, "align bottom", |_| align(Alignment::Bottom)),
+    shortcut(1, Modifiers::ALT, Key::H, "distribute across", |_| align(Alignment::Across)),
+    shortcut(1, Modifiers::ALT, Key::V, "distribute down", |_| align(Alignment::Down)),
+    shortcut(1, Modifiers::ALT, Key::S, "swap the first two inputs", |_| Some(GraphCommand::Swap.into())),
     shortcut(1, NONE, Key::Enter, "enter the graph within", |view| Some(ViewCommand::Enter(view.active?).into())),
     shortcut(1, NONE, Key::U, "leave it again", |view| {
         Some(ViewCommand::LeaveTo(view.path.len().checked_sub(1)?).into())
@@ -86,6 +99,12 @@ impl Shortcut {
         let modifiers = names.format(&self.modifiers, false);
         if modifiers.is_empty() { self.key.name().to_owned() } else { format!("{modifiers}+{}", self.key.name()) }
     }
+}
+
+/// The keys of a command, in words; `None` where it has none.
+pub(crate) fn keys_of(command: &Command) -> Option<String> {
+    let view = ViewState::default();
+    SHORTCUTS.iter().find(|shortcut| (shortcut.make)(&view).as_ref() == Some(command)).map(Shortcut::keys)
 }
 
 /// What the keys of this frame ask for. While text is typed, keys are text; away from the canvas, Tab goes from field to field.

@@ -5,6 +5,7 @@ use egui_tiles::{Behavior, SimplificationOptions, TileId, Tiles, UiResponse};
 
 use crate::app::{App, is_graph};
 use crate::canvas::Canvas;
+use crate::canvas::arrange::Alignment;
 use crate::command::{Command, FileCommand, FileTarget, GraphCommand, NewLink, StrokeDeed, ViewCommand};
 use crate::dialog;
 use crate::dock::{self, Pane};
@@ -13,6 +14,7 @@ use crate::panel::data::Data;
 use crate::panel::inspector::Inspector;
 use crate::panel::palette::{DraggedKind, Palette};
 use crate::panel::{PanelContext, help, history, performance, problems};
+use crate::shortcuts::keys_of;
 use crate::view_state::Tool;
 use crate::viewport::camera::Direction;
 use crate::viewport::picture::Shading;
@@ -176,6 +178,18 @@ impl App {
         ui.separator();
         self.item(ui, "Select all", "Ctrl+A", true, ViewCommand::SelectAll);
         self.item(ui, "Arrange all", "L", true, GraphCommand::Arrange);
+        self.item(ui, "Arrange selected", "Shift+L", some, GraphCommand::ArrangeSelected);
+        let several = self.view.selection.len() > 1;
+        ui.add_enabled_ui(several, |ui| {
+            ui.menu_button("Align", |ui| {
+                for alignment in Alignment::ALL {
+                    let command = GraphCommand::Align(alignment).into();
+                    let keys = keys_of(&command).unwrap_or_default();
+                    self.item(ui, alignment.name(), &keys, true, command);
+                }
+            });
+        });
+        self.item(ui, "Swap inputs", "Alt+S", self.view.active.is_some(), GraphCommand::Swap);
     }
 
     fn view_menu(&mut self, ui: &mut Ui) {

@@ -7,7 +7,7 @@ use maquette_graph::file::Includes;
 use maquette_graph::{Edit, Graph, NodeId, NodeRecord, Source};
 
 use crate::app::App;
-use crate::canvas::arrange;
+use crate::canvas::{arrange, swap};
 use crate::command::{GraphCommand, NewLink};
 use crate::naming::free_name;
 
@@ -44,7 +44,10 @@ impl App {
             GraphCommand::Add { kind, at, link } => self.add(&kind, at, link),
             GraphCommand::DropOnLink { node, to, input, at } => self.drop_on_link(node, to, &input, at),
             GraphCommand::Delete => {
-                let edits = self.selected().into_iter().map(Edit::RemoveNode).collect();
+                let selected = &self.view.selection;
+                let links = self.canvas.take_selected_links().into_iter().filter(|(to, _)| !selected.contains(to));
+                let links = links.map(|(to, input)| Edit::Disconnect { to, input });
+                let edits = links.chain(selected.iter().copied().map(Edit::RemoveNode)).collect();
                 self.make("delete", edits, None);
             }
             GraphCommand::Dissolve => self.dissolve(),
@@ -89,13 +92,44 @@ impl App {
                 self.carry_out(&format!("promote {input}"), plan);
             }
             GraphCommand::Arrange => {
-                let places = arrange::arrange(self.canvas_graph());
-                let edits = places
-                    .into_iter()
-                    .map(|(node, place)| Edit::Move { node, position: Some([f64::from(place.x), f64::from(place.y)]) });
-                self.make("arrange", edits.collect(), None);
+                let places = arrange::arrange(self.canvas_graph(), &self.view.expanded);
+                self.place("arrange", places);
                 self.canvas.frame_all = true;
             }
+            GraphCommand::ArrangeSelected => {
+                let rects = self.canvas.rects(&self.view.path, &self.view.selection);
+                let corner = rects.iter().map(|(_, rect)| rect.min).reduce(|a, b| a.min(b)).unwrap_or_default();
+                let (expanded, selected) = (&self.view.expanded, &self.view.selection);
+                let places = arrange::arrange_selected(self.canvas_graph(), expanded, selected, corner);
+                self.place("arrange selected", places);
+            }
+            GraphCommand::Align(alignment) => {
+                let (ids, rects): (Vec<_>, Vec<_>) =
+                    self.canvas.rects(&self.view.path, &self.view.selection).into_iter().unzip();
+                let places = alignment.places(&rects);
+                self.place(&alignment.name().to_lowercase(), ids.into_iter().zip(places));
+            }
+            GraphCommand::Swap => self.swap(),
+        }
+    }
+
+    /// Puts nodes there, as one step.
+    fn place(&mut self, name: &str, places: impl IntoIterator<Item = (NodeId, egui::Pos2)>) {
+        let edits = places
+            .into_iter()
+            .map(|(node, place)| Edit::Move { node, position: Some([f64::from(place.x), f64::from(place.y)]) });
+        self.make(name, edits.collect(), None);
+    }
+
+    /// Lets what the first two inputs of the active node hold change places, or says why it can't.
+    fn swap(&mut self) {
+        let Some(node) = self.view.active else {
+            self.complain("select the node whose first two inputs are to change places");
+            return;
+        };
+        match swap::swap(self.canvas_graph(), &self.catalogue, node) {
+            Ok(edits) => self.make("swap inputs", edits, None),
+            Err(error) => self.complain(error),
         }
     }
 
