@@ -227,6 +227,8 @@ pub enum ViewCommand {
     FrameAll,
     /// Frames what the selected nodes show.
     FrameSelected,
+    /// Lets the perspective view see without perspective, or with it again.
+    Parallel,
     /// Lets the panel under the pointer fill the window, or puts all back.
     Maximise,
     /// Stops the evaluation.

@@ -88,6 +88,7 @@ pub(crate) const SHORTCUTS: &[Shortcut] = &[
     shortcut(2, NONE, Key::F, "frame selected", |_| Some(ViewCommand::FrameSelected.into())),
     shortcut(2, NONE, Key::A, "frame all", |_| Some(ViewCommand::FrameAll.into())),
     shortcut(2, NONE, Key::Home, "frame all", |_| Some(ViewCommand::FrameAll.into())),
+    shortcut(2, NONE, Key::Num5, "with or without perspective", |_| Some(ViewCommand::Parallel.into())),
     shortcut(2, NONE, Key::Space, "maximise what is under the pointer", |_| Some(ViewCommand::Maximise.into())),
     shortcut(2, NONE, Key::Escape, "stop evaluating", |_| Some(ViewCommand::Stop.into())),
 ];

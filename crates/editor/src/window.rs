@@ -224,6 +224,7 @@ impl App {
         ui.separator();
         self.item(ui, "Frame all", "Home", true, ViewCommand::FrameAll);
         self.item(ui, "Frame selected", "F", true, ViewCommand::FrameSelected);
+        self.item(ui, "With or without perspective", "5", true, ViewCommand::Parallel);
     }
 
     fn tools(&mut self, ui: &mut Ui) {

@@ -70,6 +70,41 @@ impl Grid {
         Self { step, fine, coarse, axes: [(u, along(v, u, 0.0)), (v, along(u, v, 0.0))] }
     }
 
+    /// The coordinates of every tenth line across a view: the axis of the screen (0 rightwards, 1 upwards), metres, and where
+    /// the line is seen, points from the left or the upper edge; of a view that is seen flat.
+    pub(crate) fn numbers(&self, camera: &Camera, size: ViewSize) -> Vec<(usize, f64, f32)> {
+        let axes = plane(camera.direction);
+        let mut numbers = Vec::new();
+        for (screen, axis) in axes.into_iter().enumerate().filter(|_| camera.direction != Direction::Free) {
+            // Each line stands in the list with its one coordinate along this axis.
+            for line in &self.coarse {
+                let at = [line.from, line.to].map(|end| f64::from(end[axis]));
+                if (at[0] - at[1]).abs() > 0.5 * self.step {
+                    continue;
+                }
+                let mut place = camera.focus();
+                place[axis] = at[0];
+                if let Some(seen) = camera.project(size, place) {
+                    numbers.push((screen, at[0], if screen == 0 { seen.x } else { seen.y }));
+                }
+            }
+        }
+        numbers
+    }
+
+    /// A coordinate in words, with as many digits as lines differ in.
+    pub(crate) fn number(&self, metres: f64) -> String {
+        let digits = if self.step >= 0.1 {
+            0
+        } else if self.step >= 0.0095 {
+            1
+        } else {
+            2
+        };
+        let text = format!("{metres:.digits$}");
+        if text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') { "0".to_owned() } else { text }
+    }
+
     /// The distance of the lines in words.
     pub(crate) fn label(&self) -> String {
         match self.step {
@@ -97,6 +132,24 @@ mod tests {
             assert!((14.0..141.0).contains(&gap), "{gap} points");
             assert!(grid.fine.len() + grid.coarse.len() < 1000);
         }
+    }
+
+    #[test]
+    fn every_tenth_line_has_its_number() {
+        let size = ViewSize::new(egui::vec2(400.0, 400.0));
+        let camera = Camera::new(Direction::Side);
+        let grid = Grid::new(&camera, size);
+        let numbers = grid.numbers(&camera, size);
+        // About two metres around a height of one, in metres: from the left edge to the right, and from the top down.
+        let across: Vec<String> =
+            numbers.iter().filter(|(screen, ..)| *screen == 0).map(|(_, at, _)| grid.number(*at)).collect();
+        let up: Vec<String> =
+            numbers.iter().filter(|(screen, ..)| *screen == 1).map(|(_, at, _)| grid.number(*at)).collect();
+        assert_eq!((across.join(" "), up.join(" ")), ("-1 0 1".to_owned(), "0 1 2".to_owned()));
+        let seen = |screen, at: f64| numbers.iter().find(|(s, a, _)| *s == screen && (a - at).abs() < 1e-6).unwrap().2;
+        assert!((seen(0, 0.0) - 200.0).abs() < 0.5 && (seen(1, 1.0) - 200.0).abs() < 0.5);
+        assert!(seen(1, 2.0) < seen(1, 1.0));
+        assert!(Grid::new(&Camera::new(Direction::Free), size).numbers(&Camera::new(Direction::Free), size).is_empty());
     }
 
     #[test]

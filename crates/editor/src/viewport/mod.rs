@@ -238,6 +238,22 @@ impl ViewPane {
         }
     }
 
+    /// Coordinates along the lower and the left edge, metres.
+    fn rulers(&self, painter: &egui::Painter, rect: egui::Rect, size: ViewSize, grid: &Grid, colour: egui::Color32) {
+        let font = egui::FontId::proportional(10.0);
+        for (screen, metres, at) in grid.numbers(&self.camera, size) {
+            let text = grid.number(metres);
+            // Away from the corner, which says the distance of the lines, and from the name of the view.
+            if screen == 0 && at > 80.0 && at < rect.width() - 8.0 {
+                let place = rect.left_bottom() + egui::vec2(at, -2.0);
+                painter.text(place, egui::Align2::CENTER_BOTTOM, text, font.clone(), colour);
+            } else if screen == 1 && at > 60.0 && at < rect.height() - 26.0 {
+                let place = rect.left_top() + egui::vec2(4.0, at);
+                painter.text(place, egui::Align2::LEFT_CENTER, text, font.clone(), colour);
+            }
+        }
+    }
+
     /// Where a stroke that begins or ends here is caught, and how far it may be from the pen.
     fn pen(&self, ui: &egui::Ui, rect: egui::Rect, context: &PanelContext<'_>, view: &ToolView<'_>) {
         let Some(pointer) = ui.input(|i| i.pointer.hover_pos()).filter(|at| rect.contains(*at)) else { return };
@@ -343,6 +359,7 @@ impl ViewPane {
             painter.text(rect.left_top() + egui::vec2(10.0, 25.0), egui::Align2::LEFT_TOP, hint, font.clone(), weak);
         }
         if context.settings.grid {
+            self.rulers(&painter, rect, size, grid, weak);
             let label = format!("grid {}", grid.label());
             painter.text(
                 rect.left_bottom() + egui::vec2(10.0, -8.0),
