@@ -279,9 +279,8 @@ impl MoveGizmo {
             Some(gesture) => Some(gesture.part),
             None => hover.and_then(|at| moved.under(view, at)),
         };
-        for axis in 0..3 {
+        for (axis, [r, g, b, _]) in AXES.into_iter().enumerate() {
             let Some(tip) = moved.tip(view, axis).filter(|tip| (*tip - middle).length() > SHORT) else { continue };
-            let [r, g, b, _] = AXES[axis];
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
             let own = Color32::from_rgb((r * 255.0) as u8, (g * 255.0) as u8, (b * 255.0) as u8);
             let colour = if hot == Some(Part::Arrow(axis)) { HOT } else { own };
