@@ -12,6 +12,7 @@ use crate::command::{Command, FileCommand};
 use crate::dialog::{Answer, Asking};
 use crate::dock::{self, Pane};
 use crate::document::{Document, ProjectChoice};
+use crate::drawable::Depiction;
 use crate::evaluation_worker::{EvaluationWorker, Job};
 use crate::panel::data::Data;
 use crate::panel::inspector::Inspector;
@@ -59,7 +60,7 @@ pub enum StartError {
 pub(crate) struct Wanted {
     revision: u64,
     targets: Vec<NodeId>,
-    curvature: bool,
+    depiction: Depiction,
     examined: Vec<NodeId>,
 }
 
@@ -248,14 +249,18 @@ impl App {
         let active = self.view.active.filter(|id| self.view.path.is_empty() && graph.node(*id).is_some());
         let mut targets = drawn.clone();
         targets.extend(active.filter(|id| !drawn.contains(id)));
-        let curvature = self.settings.shading == Shading::Curvature;
+        let depiction = Depiction {
+            curvature: self.settings.shading == Shading::Curvature,
+            outlines: self.settings.shading == Shading::Silhouette,
+            detail: self.settings.detail,
+        };
         // What costs much is measured of the node that is looked into, while it is.
         let is_looked_into = dock::is_shown(&self.tree, self.maximised, Pane::Data);
         let measures = |id: &NodeId| {
             graph.node(*id).and_then(|node| node.acting_kind()).is_some_and(|kind| kind.has_examination())
         };
         let examined = active.filter(|id| is_looked_into && measures(id)).into_iter().collect();
-        let wanted = Wanted { revision: self.document.revision(), targets, curvature, examined };
+        let wanted = Wanted { revision: self.document.revision(), targets, depiction, examined };
         if self.submitted.as_ref() == Some(&wanted) {
             return;
         }
@@ -268,7 +273,7 @@ impl App {
             drawn: wanted.targets.clone(),
             folder: self.document.folder(),
             project: self.document.project(),
-            curvature,
+            depiction,
             examined: wanted.examined.clone(),
         });
         self.submitted = Some(wanted);

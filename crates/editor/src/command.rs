@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use maquette_graph::{Edit, NodeId, ReferencePicture};
+use maquette_graph::{Edit, NodeId, ReferencePicture, Stroke};
 
 use crate::canvas::arrange::Alignment;
 use crate::view_state::{PickedRow, Tool};
@@ -63,6 +63,13 @@ pub enum GraphCommand {
         pictures: Vec<ReferencePicture>,
         /// The same for all edits of one gesture.
         gesture: Option<String>,
+    },
+    /// Adds a node that selects of the active mesh by hand: by a loop drawn in the plane of that name, or by painting.
+    SelectByHand {
+        /// The node that gives the mesh, and its output.
+        mesh: (NodeId, String),
+        /// The plane and the loop; `None` to paint.
+        strokes: Option<(&'static str, Stroke)>,
     },
     /// Changes the picked strokes of the active sketch, or all of them where none is picked.
     Strokes(StrokeDeed),
@@ -224,6 +231,8 @@ pub enum ViewCommand {
     FrameAll,
     /// Frames what the selected nodes show.
     FrameSelected,
+    /// Lets the perspective view see without perspective, or with it again.
+    Parallel,
     /// Lets the panel under the pointer fill the window, or puts all back.
     Maximise,
     /// Stops the evaluation.

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use maquette_graph::file::Project;
 use maquette_graph::{CancelToken, Catalogue, Evaluation, Evaluator, Event, EventKind, Events, Graph, NodeId, Request};
 
-use crate::drawable::{Drawables, Shown};
+use crate::drawable::{Depiction, Drawables, Shown};
 
 /// How long an evaluation that is no longer wanted may go on.
 const PATIENCE: Duration = Duration::from_millis(120);
@@ -28,8 +28,8 @@ pub(crate) struct Job {
     pub(crate) drawn: Vec<NodeId>,
     pub(crate) folder: PathBuf,
     pub(crate) project: Project,
-    /// Whether the curvature of meshes is wanted.
-    pub(crate) curvature: bool,
+    /// What of values is made ready beside their shape.
+    pub(crate) depiction: Depiction,
     /// The nodes of which is measured what costs too much for every evaluation.
     pub(crate) examined: Vec<NodeId>,
 }
@@ -239,7 +239,7 @@ fn evaluate(
     let request = Request::nodes(&job.targets).examine_only(&job.examined);
     let request = request.events(&listener).cancel(cancel).base(&job.folder).project(&job.project);
     let evaluation = evaluator.evaluate(catalogue, &job.graph, &request);
-    let shown = drawables.of(&evaluation, &job.drawn, job.curvature);
+    let shown = drawables.of(&evaluation, &job.drawn, job.depiction);
     let spans = std::mem::take(&mut shared.state().spans);
     let mut timeline: Vec<Span> =
         spans.into_iter().filter_map(|(name, (begin, end))| Some(Span { name, begin, end: end? })).collect();

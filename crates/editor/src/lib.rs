@@ -29,6 +29,7 @@ mod window;
 
 pub use app::{App, Options, StartError, recovery_folder};
 pub use canvas::arrange::Alignment;
+pub use drawable::Detail;
 pub use evaluation_worker::NodeStatus;
 pub use panel::tour::Tour;
 pub use viewport::camera::Direction;

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use maquette_graph::{Graph, NodeId};
 use serde::{Deserialize, Serialize};
 
+use crate::drawable::Detail;
 use crate::panel::tour::Tour;
 use crate::viewport::picture::Shading;
 
@@ -24,14 +25,27 @@ pub enum Tool {
     Cut,
     /// Takes away what it is drawn across.
     Erase,
+    /// Selects of a mesh what lies in a drawn loop.
+    Lasso,
+    /// Selects vertices of a mesh with a brush.
+    Paint,
     /// Moves and scales reference pictures.
     Picture,
 }
 
 impl Tool {
     /// All tools, in the order of the bar.
-    pub const ALL: [Self; 7] =
-        [Self::Select, Self::Sketch, Self::Pull, Self::Transform, Self::Cut, Self::Erase, Self::Picture];
+    pub const ALL: [Self; 9] = [
+        Self::Select,
+        Self::Sketch,
+        Self::Pull,
+        Self::Transform,
+        Self::Cut,
+        Self::Erase,
+        Self::Lasso,
+        Self::Paint,
+        Self::Picture,
+    ];
 
     /// What it is called.
     pub fn name(self) -> &'static str {
@@ -42,6 +56,8 @@ impl Tool {
             Self::Transform => "Transform",
             Self::Cut => "Cut",
             Self::Erase => "Erase",
+            Self::Lasso => "Lasso",
+            Self::Paint => "Paint",
             Self::Picture => "Picture",
         }
     }
@@ -59,6 +75,8 @@ impl Tool {
             }
             Self::Cut => "Drag across strokes to cut them in two",
             Self::Erase => "Drag across strokes to take parts of them away",
+            Self::Lasso => "Draw a loop around a part of the active node's mesh to select it",
+            Self::Paint => "Drag over the active node's mesh to select vertices; with Ctrl to take them away",
             Self::Picture => "Drag a reference picture; with Shift along something of known length to scale it",
         }
     }
@@ -70,6 +88,8 @@ impl Tool {
 pub struct Settings {
     /// How surfaces are looked at.
     pub shading: Shading,
+    /// How finely exact surfaces are shown.
+    pub detail: Detail,
     /// Whether edges are drawn over them.
     pub wire: bool,
     /// Whether the grid is drawn.
@@ -88,6 +108,8 @@ pub struct Settings {
     pub pull_radius: f64,
     /// Whether what is drawn across the middle of the body is mirrored.
     pub symmetric: bool,
+    /// Radius of the brush that selects, metres.
+    pub brush: f64,
     /// Whether ends of strokes are caught by other curves and the middle of the body.
     pub snap: bool,
     /// The length that one draws along in a reference picture to scale it, metres.
@@ -104,6 +126,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             shading: Shading::default(),
+            detail: Detail::default(),
             wire: true,
             grid: true,
             curves: true,
@@ -113,6 +136,7 @@ impl Default for Settings {
             tolerance: 0.002,
             pull_radius: 0.1,
             symmetric: false,
+            brush: 0.03,
             snap: true,
             known_length: 1.0,
             recent: Vec::new(),

@@ -9,6 +9,7 @@ use crate::canvas::arrange::Alignment;
 use crate::command::{Command, FileCommand, FileTarget, GraphCommand, NewLink, StrokeDeed, ViewCommand};
 use crate::dialog;
 use crate::dock::{self, Pane};
+use crate::drawable::Detail;
 use crate::panel::data::Data;
 use crate::panel::inspector::Inspector;
 use crate::panel::palette::{DraggedKind, Palette};
@@ -245,6 +246,11 @@ impl App {
         }
         ui.separator();
         let settings = &mut self.settings;
+        ui.menu_button("Detail of exact surfaces", |ui| {
+            for detail in Detail::ALL {
+                ui.radio_value(&mut settings.detail, detail, detail.name());
+            }
+        });
         ui.checkbox(&mut settings.wire, "Edges");
         ui.checkbox(&mut settings.curves, "Curves");
         ui.checkbox(&mut settings.sections, "Sections and rails");
@@ -265,6 +271,7 @@ impl App {
         ui.separator();
         self.item(ui, "Frame all", "Home", true, ViewCommand::FrameAll);
         self.item(ui, "Frame selected", "F", true, ViewCommand::FrameSelected);
+        self.item(ui, "With or without perspective", "5", true, ViewCommand::Parallel);
     }
 
     fn tools(&mut self, ui: &mut Ui) {
@@ -319,7 +326,16 @@ impl App {
                     field.on_hover_text("What Shift+dragging along something in the picture makes it measure");
                     ui.label(RichText::new(Tool::Picture.description()).weak());
                 }
-                Tool::Select | Tool::Cut | Tool::Erase => {
+                Tool::Paint => {
+                    ui.label("brush");
+                    let mut centimetres = settings.brush * 100.0;
+                    let field = egui::DragValue::new(&mut centimetres).range(0.01..=1000.0).speed(0.05).suffix(" cm");
+                    let field = ui.add(field);
+                    field.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::DragValue, true, "brush"));
+                    field.on_hover_text("Radius of the brush");
+                    settings.brush = centimetres / 100.0;
+                }
+                Tool::Select | Tool::Cut | Tool::Erase | Tool::Lasso => {
                     ui.label(RichText::new(self.view.tool.description()).weak());
                 }
             }

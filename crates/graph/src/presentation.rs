@@ -114,8 +114,9 @@ pub(crate) fn check_frames(frames: &[Frame]) -> Result<(), PresentationError> {
 /// Asks whether pictures can be drawn.
 pub(crate) fn check_references(references: &[ReferencePicture]) -> Result<(), PresentationError> {
     for (index, picture) in references.iter().enumerate() {
-        let finite = picture.centre.iter().all(|number| number.is_finite());
-        if !finite || !(picture.width.is_finite() && picture.width > 0.0) || !(0.0..=1.0).contains(&picture.opacity) {
+        let is_finite = picture.centre.iter().all(|number| number.is_finite()) && picture.width.is_finite();
+        let is_seen = picture.width > 0.0 && (0.0..=1.0).contains(&picture.opacity);
+        if !(is_finite && is_seen) {
             return Err(PresentationError::Numbers(index));
         }
         if !matches!(picture.view.as_str(), "front" | "side" | "top") {

@@ -128,7 +128,13 @@ impl App {
 
     /// Puts a picture behind the strokes of a view, in the middle of what it shows.
     fn add_reference(&mut self, view: Direction, path: &Path) {
-        let file = relative(path, &self.document.folder());
+        let folder = self.document.folder();
+        let file = relative(path, &folder);
+        // Said now, and not only when the graph is opened the next time.
+        if let Err(outside) = self.document.project().check(&folder.join(&file)) {
+            self.complain(outside);
+            return;
+        }
         let placed = self.views.iter().find(|pane| pane.camera.direction == view).and_then(|pane| pane.placed(file));
         let Some(picture) = placed else {
             self.complain("a reference picture stands in the front, side or top view: choose one of these");

@@ -25,6 +25,7 @@ impl App {
                     Err(error) => self.complain(error),
                 }
             }
+            GraphCommand::SelectByHand { mesh, strokes } => self.select_by_hand(mesh, strokes),
             GraphCommand::Strokes(deed) => self.apply_strokes(deed),
             GraphCommand::EndGesture => self.document.end_gesture(),
             GraphCommand::Undo => {

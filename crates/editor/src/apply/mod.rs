@@ -2,6 +2,7 @@
 
 mod file;
 mod graph;
+mod selecting;
 mod strokes;
 mod view;
 

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use crate::app::App;
 use crate::command::ViewCommand;
 use crate::viewport::Framing;
+use crate::viewport::camera::Direction;
 
 impl App {
     pub(super) fn apply_view(&mut self, context: &egui::Context, command: ViewCommand) {
@@ -61,6 +62,12 @@ impl App {
                 }
             }
             ViewCommand::FrameSelected => self.views.iter_mut().for_each(|view| view.framing = Framing::Selected),
+            ViewCommand::Parallel => {
+                let free = self.views.iter_mut().find(|view| view.camera.direction == Direction::Free);
+                if let Some(view) = free {
+                    view.camera.parallel = !view.camera.parallel;
+                }
+            }
             ViewCommand::Maximise => self.toggle_maximised(context),
             ViewCommand::Stop => {
                 if !self.close_front() && self.results.progress().is_some() {

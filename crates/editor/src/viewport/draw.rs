@@ -8,7 +8,7 @@ use crate::drawable::{LineRole, Segment};
 use crate::panel::PanelContext;
 use crate::sketch::target::{SketchTarget, points};
 
-use super::camera::{Camera, ViewSize};
+use super::camera::{Camera, Direction, ViewSize};
 use super::grid::Grid;
 use super::picture::{LineDraw, LineSource, Picture, Shading, SurfaceDraw, ViewUniform};
 
@@ -88,14 +88,26 @@ pub(crate) fn picture(context: &PanelContext<'_>, of: &PictureOf<'_>, grid: &Gri
         let is_active = active == Some(shown.node);
         for drawable in &shown.drawables {
             let colour = drawable.colour.unwrap_or(CLAY);
-            if let Some(surface) = drawable.surface.as_ref().filter(|_| is_drawn) {
-                let wanted = settings.wire && settings.shading != Shading::Zebra;
+            // A selection is shown over its mesh while its node is looked at.
+            let over = drawable.is_selection && is_active;
+            let colour = if over { ACCENT } else { colour };
+            if let Some(surface) = drawable.surface.as_ref().filter(|_| is_drawn || over) {
+                let wanted = match settings.shading {
+                    Shading::Facets => true,
+                    Shading::Zebra | Shading::Silhouette => false,
+                    _ => settings.wire,
+                };
                 surfaces.push(SurfaceDraw {
                     drawable: drawable.clone(),
                     colour,
                     wire: faded(palette.wire, surface.edge_length / of.camera.metres_per_point(of.size))
                         .filter(|_| wanted),
-                    mark: if is_active { 0.08 } else { 0.0 },
+                    mark: match (over, is_active) {
+                        (true, _) => 0.55,
+                        (_, true) => 0.08,
+                        _ => 0.0,
+                    },
+                    forward: over,
                 });
             }
             let roles = [
@@ -113,7 +125,7 @@ pub(crate) fn picture(context: &PanelContext<'_>, of: &PictureOf<'_>, grid: &Gri
         }
     }
     if settings.curves {
-        lines.extend(sketches(context, palette));
+        lines.extend(sketches(context, palette, of.camera.direction));
     }
     lines.extend(picked_row(context));
     Picture {
@@ -146,7 +158,7 @@ fn faded([r, g, b, a]: [f32; 4], points: f64) -> Option<[f32; 4]> {
 }
 
 /// The strokes of the graph, straight from the document: they follow the pen without waiting for anything.
-fn sketches(context: &PanelContext<'_>, palette: &Palette) -> Vec<LineDraw> {
+fn sketches(context: &PanelContext<'_>, palette: &Palette, direction: Direction) -> Vec<LineDraw> {
     let is_selected = |node: &NodeId| context.view.selection.contains(node);
     let draw = |target: SketchTarget| {
         let selected = is_selected(&target.node);
@@ -157,7 +169,10 @@ fn sketches(context: &PanelContext<'_>, palette: &Palette) -> Vec<LineDraw> {
             let within = |index: usize| !active || picked.contains(&index);
             let strokes = target.strokes.iter().enumerate().filter(|(index, _)| within(*index) == thick);
             let strokes = strokes.map(|(_, stroke)| stroke);
-            strokes_of(&target, strokes, palette, selected, thick)
+            let mut lines = strokes_of(&target, strokes, palette, selected, thick);
+            // What was drawn in this view is seen through everything, as it can be picked.
+            lines.on_top |= target.plane.view == direction;
+            lines
         })
     };
     SketchTarget::all(context.graph()).flat_map(draw).collect()

@@ -5,10 +5,13 @@ pub(crate) mod draw;
 pub(crate) mod gizmo;
 pub(crate) mod gpu;
 pub(crate) mod grid;
+pub(crate) mod move_gizmo;
+pub(crate) mod outline;
 pub(crate) mod pick;
 mod picked_row;
 pub(crate) mod picture;
 pub(crate) mod reference;
+pub(crate) mod selection_tool;
 pub(crate) mod sketch_tool;
 pub(crate) mod snap;
 pub(crate) mod transform_tool;
@@ -29,7 +32,11 @@ use crate::view_state::Tool;
 use self::camera::{Camera, Direction, ViewSize};
 use self::draw::PictureOf;
 use self::grid::Grid;
+use self::move_gizmo::MoveGizmo;
+use self::outline::OutlineError;
+use self::picture::Shading;
 use self::reference::PictureTool;
+use self::selection_tool::SelectionTool;
 use self::sketch_tool::{SketchTool, ToolView};
 use self::transform_tool::TransformTool;
 
@@ -64,6 +71,9 @@ pub(crate) struct ViewPane {
     tool: SketchTool,
     transform: TransformTool,
     pictures: PictureTool,
+    outline: OutlineError,
+    moves: MoveGizmo,
+    selecting: SelectionTool,
     /// How hard a pen presses; `None` while there is none.
     pen: Option<f64>,
     /// What of the screen it covered in the last frame.
@@ -78,6 +88,9 @@ impl ViewPane {
             tool: SketchTool::default(),
             transform: TransformTool::default(),
             pictures: PictureTool::default(),
+            outline: OutlineError::default(),
+            moves: MoveGizmo::default(),
+            selecting: SelectionTool::default(),
             pen: None,
             rect: None,
         }
@@ -98,6 +111,9 @@ impl ViewPane {
         self.navigate(ui, &response, context, size);
         self.use_tool(ui, &response, context, size);
         let grid = Grid::new(&self.camera, size);
+        if context.settings.shading == Shading::Silhouette {
+            self.outline.update(context, direction);
+        }
         self.paint(ui, rect, context, graphics, size, &grid);
         self.overlay(ui, rect, context, size, &grid);
     }
@@ -155,6 +171,22 @@ impl ViewPane {
         let alt = ui.input(|i| i.modifiers.alt);
         let view = ToolView { camera: &self.camera, size };
         if context.view.tool == Tool::Select {
+            let exact = ui.input(|i| i.modifiers.shift);
+            if response.drag_started_by(PointerButton::Primary)
+                && !alt
+                && let Some(at) = ui.input(|i| i.pointer.press_origin())
+            {
+                self.moves.press(context, &view, at - corner);
+            }
+            if response.dragged_by(PointerButton::Primary)
+                && self.moves.is_held()
+                && let Some(at) = response.interact_pointer_pos()
+            {
+                self.moves.drag(context, &view, at - corner, exact);
+            }
+            if response.drag_stopped_by(PointerButton::Primary) {
+                self.moves.release(context);
+            }
             if response.clicked()
                 && let Some(at) = response.interact_pointer_pos()
             {
@@ -177,12 +209,13 @@ impl ViewPane {
         self.pen = pressure(ui).or(self.pen);
         // A click does what a press and a release do.
         let begins = response.drag_started_by(PointerButton::Primary)
-            || (response.clicked() && context.view.tool == Tool::Transform);
+            || (response.clicked() && matches!(context.view.tool, Tool::Transform | Tool::Paint));
         if begins && let Some(at) = press.or(at) {
             let at = at - corner;
             match context.view.tool {
                 Tool::Transform => self.transform.press(context, &view, at, modifiers),
                 Tool::Picture => self.pictures.press(context, &view, at, modifiers.shift),
+                Tool::Lasso | Tool::Paint => self.selecting.press(context, &view, at, modifiers.command),
                 _ => self.tool.press(context, &view, at),
             }
         }
@@ -193,25 +226,51 @@ impl ViewPane {
             match context.view.tool {
                 Tool::Transform => self.transform.drag(context, &view, at, modifiers),
                 Tool::Picture => self.pictures.drag(context, &view, at),
+                Tool::Lasso | Tool::Paint => self.selecting.drag(context, &view, at),
                 _ => self.tool.drag(context, &view, at, self.pen),
             }
         }
         if response.drag_stopped_by(PointerButton::Primary) || response.clicked() {
             self.transform.release(context);
             self.pictures.release(context);
+            self.selecting.release(context, &view);
             self.tool.release(context, &view);
             self.pen = None;
+        }
+    }
+
+    /// Coordinates along the lower and the left edge, metres.
+    fn rulers(&self, painter: &egui::Painter, rect: egui::Rect, size: ViewSize, grid: &Grid, colour: egui::Color32) {
+        let font = egui::FontId::proportional(10.0);
+        for (screen, metres, at) in grid.numbers(&self.camera, size) {
+            let text = grid.number(metres);
+            // Away from the corner, which says the distance of the lines, and from the name of the view.
+            if screen == 0 && at > 80.0 && at < rect.width() - 8.0 {
+                let place = rect.left_bottom() + egui::vec2(at, -2.0);
+                painter.text(place, egui::Align2::CENTER_BOTTOM, text, font.clone(), colour);
+            } else if screen == 1 && at > 60.0 && at < rect.height() - 26.0 {
+                let place = rect.left_top() + egui::vec2(4.0, at);
+                painter.text(place, egui::Align2::LEFT_CENTER, text, font.clone(), colour);
+            }
         }
     }
 
     /// Where a stroke that begins or ends here is caught, and how far it may be from the pen.
     fn pen(&self, ui: &egui::Ui, rect: egui::Rect, context: &PanelContext<'_>, view: &ToolView<'_>) {
         let Some(pointer) = ui.input(|i| i.pointer.hover_pos()).filter(|at| rect.contains(*at)) else { return };
-        if context.view.tool != Tool::Sketch || !ui.rect_contains_pointer(rect) {
+        if !ui.rect_contains_pointer(rect) {
             return;
         }
         let painter = ui.painter().with_clip_rect(rect);
         let accent = egui::Color32::from_rgb(255, 160, 45);
+        if context.view.tool == Tool::Paint {
+            #[expect(clippy::cast_possible_truncation, reason = "points of the screen")]
+            let radius = (context.settings.brush / self.camera.metres_per_point(view.size)) as f32;
+            painter.circle_stroke(pointer, radius.clamp(2.0, 2000.0), egui::Stroke::new(1.5, accent));
+        }
+        if context.view.tool != Tool::Sketch {
+            return;
+        }
         #[expect(clippy::cast_possible_truncation, reason = "points of the screen")]
         let tolerance = (context.settings.tolerance / self.camera.metres_per_point(view.size)) as f32;
         if (2.0..400.0).contains(&tolerance) {
@@ -273,7 +332,11 @@ impl ViewPane {
             dark: ui.visuals().dark_mode,
             samples: if graphics == Graphics::Smooth && context.settings.smooth_edges { 4 } else { 1 },
         };
-        let picture = Arc::new(draw::picture(context, &of, grid));
+        let mut picture = draw::picture(context, &of, grid);
+        if context.settings.shading == Shading::Silhouette && Plane::of_view(self.camera.direction).is_some() {
+            picture.lines.extend(self.outline.lines());
+        }
+        let picture = Arc::new(picture);
         ui.painter().add(egui_wgpu::Callback::new_paint_callback(rect, gpu::PaintPicture(picture)));
     }
 
@@ -297,6 +360,7 @@ impl ViewPane {
             painter.text(rect.left_top() + egui::vec2(10.0, 25.0), egui::Align2::LEFT_TOP, hint, font.clone(), weak);
         }
         if context.settings.grid {
+            self.rulers(&painter, rect, size, grid, weak);
             let label = format!("grid {}", grid.label());
             painter.text(
                 rect.left_bottom() + egui::vec2(10.0, -8.0),
@@ -306,13 +370,17 @@ impl ViewPane {
                 weak,
             );
         }
+        if context.settings.shading == Shading::Silhouette && Plane::of_view(self.camera.direction).is_some() {
+            let place = rect.left_top() + egui::vec2(10.0, 42.0);
+            painter.text(place, egui::Align2::LEFT_TOP, &self.outline.words, font.clone(), text);
+        }
         if context.results.is_late() && !context.results.shown().is_empty() {
             let place = rect.right_bottom() + egui::vec2(-10.0, -8.0);
             painter.text(place, egui::Align2::RIGHT_BOTTOM, "this is the result before the last change", font, weak);
         }
         let corner = rect.min;
         let screen = |place: DVec3| self.camera.project(size, place).map(|seen| corner + seen);
-        if let Some((plane, drawn)) = self.tool.drawn() {
+        for (plane, drawn) in self.tool.drawn().into_iter().chain(self.selecting.drawn()) {
             let line: Vec<egui::Pos2> = drawn.iter().filter_map(|p| screen(plane.place(*p))).collect();
             painter.add(egui::Shape::line(line, egui::Stroke::new(2.5, egui::Color32::from_rgb(255, 160, 45))));
         }
@@ -320,6 +388,10 @@ impl ViewPane {
         self.pen(ui, rect, context, &view);
         if context.view.tool == Tool::Transform {
             TransformTool::show(&painter, corner, context, &view);
+        }
+        if context.view.tool == Tool::Select {
+            let hover = ui.input(|i| i.pointer.hover_pos()).filter(|at| rect.contains(*at)).map(|at| at - corner);
+            self.moves.show(&painter, corner, context, &view, hover);
         }
         self.number_curves(ui, rect, context, size);
         let pulling = context.view.tool == Tool::Pull;

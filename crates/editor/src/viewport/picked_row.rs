@@ -94,7 +94,14 @@ mod tests {
             closed: *role == LineRole::Section,
             role: *role,
         };
-        Drawable { id: 0, surface: None, lines: lines.iter().map(line).collect(), colour: None, bounds: None }
+        Drawable {
+            id: 0,
+            surface: None,
+            lines: lines.iter().map(line).collect(),
+            colour: None,
+            bounds: None,
+            is_selection: false,
+        }
     }
 
     fn at(segments: &[Segment]) -> (usize, Option<f32>) {

@@ -88,7 +88,7 @@ impl SketchTool {
     /// The pointer was pressed.
     pub(crate) fn press(&mut self, context: &mut PanelContext<'_>, view: &ToolView<'_>, at: egui::Vec2) {
         self.gesture = match context.view.tool {
-            Tool::Select | Tool::Transform | Tool::Picture => None,
+            Tool::Select | Tool::Transform | Tool::Lasso | Tool::Paint | Tool::Picture => None,
             Tool::Sketch => self.begin_drawing(context, view, at),
             Tool::Pull => {
                 let found = nearest_point(context.graph(), context.view.active, view, at);
@@ -283,7 +283,7 @@ fn finish(
 }
 
 /// The first kind that takes strokes in a plane.
-fn sketch_kind(catalogue: &Catalogue) -> Option<(String, String)> {
+pub(crate) fn sketch_kind(catalogue: &Catalogue) -> Option<(String, String)> {
     let strokes = |wire: WireType| LiteralKind::of_wire(wire) == Some(LiteralKind::Strokes);
     catalogue.kinds().find_map(|kind| {
         let input = kind.inputs().iter().find(|input| strokes(input.wire))?;

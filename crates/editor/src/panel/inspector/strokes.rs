@@ -26,7 +26,7 @@ pub(super) fn show(ui: &mut Ui, context: &mut PanelContext<'_>, id: NodeId, inpu
             let name_id = ui.id().with(("stroke name", id, index));
             let mut name = ui.data(|data| data.get_temp::<String>(name_id)).unwrap_or_else(|| stroke.name.clone());
             let field =
-                ui.add(egui::TextEdit::singleline(&mut name).desired_width((ui.available_width() - 150.0).max(60.0)));
+                ui.add(egui::TextEdit::singleline(&mut name).desired_width((ui.available_width() - 178.0).max(60.0)));
             field.widget_info(|| {
                 egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, format!("name of stroke {index}"))
             });
