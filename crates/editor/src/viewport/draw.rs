@@ -80,12 +80,14 @@ pub(crate) fn picture(context: &PanelContext<'_>, of: &PictureOf<'_>, grid: &Gri
         lines.push(own(&grid.coarse, palette.coarse, 1.0));
         lines.extend(grid.axes.iter().map(|(axis, line)| own(std::slice::from_ref(line), AXES[*axis], 1.5)));
     }
-    let drawn = context.view.drawn(context.document.graph());
-    let active = context.view.active.filter(|_| context.is_outermost());
+    let active = context.view.active;
     let mut surfaces = Vec::new();
     for shown in context.results.shown() {
-        let is_drawn = drawn.contains(&shown.node);
-        let is_active = active == Some(shown.node);
+        let is_drawn = context.is_drawn(shown);
+        let is_active = context.is_here(shown) && active == Some(shown.node);
+        if context.view.displayed_within.is_some() && !is_drawn && !is_active {
+            continue;
+        }
         for drawable in &shown.drawables {
             let colour = drawable.colour.unwrap_or(CLAY);
             // A selection is shown over its mesh while its node is looked at.
