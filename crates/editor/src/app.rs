@@ -17,6 +17,8 @@ use crate::evaluation_worker::{EvaluationWorker, Job};
 use crate::panel::data::Data;
 use crate::panel::inspector::Inspector;
 use crate::panel::palette::Palette;
+use crate::panel::tour;
+use crate::panel::welcome::Welcome;
 use crate::recovery::Recovery;
 use crate::reference_pictures::ReferencePictures;
 use crate::results::Results;
@@ -38,6 +40,8 @@ pub struct Options {
     pub project: ProjectChoice,
     /// Where unsaved work is put aside; `None` for nowhere.
     pub recovery: Option<PathBuf>,
+    /// Whether examples and a tour are offered where no graph is given and none was opened before.
+    pub welcome: bool,
 }
 
 /// Why the editor could not be started.
@@ -78,6 +82,7 @@ pub struct App {
     pub(crate) inspector: Inspector,
     pub(crate) palette: Palette,
     pub(crate) data: Data,
+    pub(crate) welcome: Welcome,
     pub(crate) tree: Tree<Pane>,
     pub(crate) maximised: Option<Pane>,
     /// The panel under the pointer.
@@ -104,7 +109,7 @@ impl App {
         let repaint = context.egui_ctx.clone();
         let worker = EvaluationWorker::start(catalogue.clone(), move || repaint.request_repaint())?;
         let stored = |key| context.storage.and_then(|storage| storage.get_string(key));
-        let settings = stored("settings").and_then(|text| ron::from_str(&text).ok()).unwrap_or_default();
+        let settings: Settings = stored("settings").and_then(|text| ron::from_str(&text).ok()).unwrap_or_default();
         let tree = stored("dock").and_then(|text| ron::from_str(&text).ok()).unwrap_or_else(dock::first_layout);
         let graphics = match &context.wgpu_render_state {
             None => Graphics::None,
@@ -129,6 +134,7 @@ impl App {
             inspector: Inspector::default(),
             palette: Palette::default(),
             data: Data::default(),
+            welcome: Welcome::default(),
             tree,
             maximised: None,
             hovered: None,
@@ -142,6 +148,8 @@ impl App {
             may_close: false,
             looked_at_disk: 0.0,
         };
+        app.view.welcome =
+            options.welcome && options.path.is_none() && !app.settings.welcomed && app.settings.recent.is_empty();
         if let Some(path) = options.path {
             app.commands.push(FileCommand::Open(path).into());
             app.apply_all(&context.egui_ctx);
@@ -281,6 +289,27 @@ impl App {
         self.submitted = Some(wanted);
     }
 
+    /// Lets the tour go on where its step was done.
+    fn tour(&mut self) {
+        let Some(tour) = self.view.tour else { return };
+        let after = tour.after(&self.document, &self.results);
+        if after != tour {
+            self.turn_to(after);
+        }
+    }
+
+    /// Goes to a step of the tour, with its tool and the line selected.
+    pub(crate) fn turn_to(&mut self, step: tour::Tour) {
+        self.view.tour = Some(step);
+        self.view.tool = step.tool();
+        self.settings.toured |= step == tour::Tour::Done;
+        if let Some(line) = self.document.graph().find(tour::LINE).filter(|_| step != tour::Tour::Done) {
+            self.view.path.clear();
+            self.view.selection = [line].into();
+            self.view.active = Some(line);
+        }
+    }
+
     fn questions(&mut self, context: &egui::Context) {
         let Some(asking) = &mut self.asking else { return };
         let Some(answer) = asking.show(context, &self.document.name()) else { return };
@@ -346,6 +375,7 @@ impl eframe::App for App {
         self.show(ui);
         self.questions(&context);
         self.apply_all(&context);
+        self.tour();
         self.evaluate();
         self.watch_disk(&context);
         if let Some(wait) = self.recovery.tick(&self.document) {

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use maquette_graph::{Edit, NodeId, ReferencePicture, Stroke};
 
 use crate::canvas::arrange::Alignment;
-use crate::view_state::Tool;
+use crate::view_state::{PickedRow, Tool};
 use crate::viewport::camera::Direction;
 
 /// Something that was asked for.
@@ -140,6 +140,10 @@ pub enum GraphCommand {
     ArrangeSelected,
     /// Lines the selected nodes up, or spreads them.
     Align(Alignment),
+    /// Puts a frame around the selected nodes.
+    Frame,
+    /// Collapses the selected nodes, or the contrary where all are.
+    Collapse,
     /// Lets the first two inputs of the active node change places.
     Swap,
 }
@@ -237,6 +241,12 @@ pub enum ViewCommand {
     Search,
     /// Shows or hides the keyboard sheet.
     Keys,
+    /// Shows the examples and the way to the tour.
+    Welcome,
+    /// Says which version this is.
+    About,
+    /// Shows what a row of a table speaks of in the views, or nothing.
+    PickRow(Option<PickedRow>),
 }
 
 /// Opening, saving, closing.
@@ -244,6 +254,8 @@ pub enum ViewCommand {
 pub enum FileCommand {
     /// An empty graph.
     New,
+    /// A small graph, and a tour through its making.
+    Tour,
     /// Asks for a file to open.
     OpenDialog,
     /// Opens a file.

@@ -31,5 +31,6 @@ pub use app::{App, Options, StartError, recovery_folder};
 pub use canvas::arrange::Alignment;
 pub use drawable::Detail;
 pub use evaluation_worker::NodeStatus;
+pub use panel::tour::Tour;
 pub use viewport::camera::Direction;
 pub use viewport::picture::Shading;

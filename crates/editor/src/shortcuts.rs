@@ -69,6 +69,8 @@ pub(crate) const SHORTCUTS: &[Shortcut] = &[
     shortcut(1, Modifiers::ALT, Key::ArrowRight, "align right", |_| align(Alignment::Right)),
     shortcut(1, Modifiers::ALT, Key::ArrowUp, "align top", |_| align(Alignment::Top)),
     shortcut(1, Modifiers::ALT, Key::ArrowDown, "align bottom", |_| align(Alignment::Bottom)),
+    shortcut(1, COMMAND, Key::J, "frame the selected nodes", |_| Some(GraphCommand::Frame.into())),
+    shortcut(1, NONE, Key::H, "collapse, open out", |_| Some(GraphCommand::Collapse.into())),
     shortcut(1, Modifiers::ALT, Key::H, "distribute across", |_| align(Alignment::Across)),
     shortcut(1, Modifiers::ALT, Key::V, "distribute down", |_| align(Alignment::Down)),
     shortcut(1, Modifiers::ALT, Key::S, "swap the first two inputs", |_| Some(GraphCommand::Swap.into())),

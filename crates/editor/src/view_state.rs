@@ -6,6 +6,7 @@ use maquette_graph::{Graph, NodeId};
 use serde::{Deserialize, Serialize};
 
 use crate::drawable::Detail;
+use crate::panel::tour::Tour;
 use crate::viewport::picture::Shading;
 
 /// What the pointer does in a view.
@@ -115,6 +116,10 @@ pub struct Settings {
     pub known_length: f64,
     /// Files that were opened, the last one first.
     pub recent: Vec<std::path::PathBuf>,
+    /// Whether the welcome was seen.
+    pub welcomed: bool,
+    /// Whether the tour was taken to its end.
+    pub toured: bool,
 }
 
 impl Default for Settings {
@@ -135,6 +140,8 @@ impl Default for Settings {
             snap: true,
             known_length: 1.0,
             recent: Vec::new(),
+            welcomed: false,
+            toured: false,
         }
     }
 }
@@ -147,6 +154,17 @@ impl Settings {
         self.recent.insert(0, path);
         self.recent.truncate(10);
     }
+}
+
+/// A row of a table that a node of the whole graph reported.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PickedRow {
+    /// The node.
+    pub node: NodeId,
+    /// The table's name.
+    pub table: String,
+    /// The row, as it was reported, counted from 0.
+    pub row: usize,
 }
 
 /// How one looks at the document.
@@ -174,6 +192,14 @@ pub struct ViewState {
     pub message: Option<crate::command::Message>,
     /// Whether the keyboard sheet is open.
     pub keys: bool,
+    /// Whether the examples and the tour are offered.
+    pub welcome: bool,
+    /// Whether it is said which version this is.
+    pub about: bool,
+    /// The row of a table that the views show.
+    pub picked_row: Option<PickedRow>,
+    /// Where the artist is in the tour; `None` outside of it.
+    pub tour: Option<Tour>,
 }
 
 impl ViewState {
@@ -195,6 +221,9 @@ impl ViewState {
             }
             self.expanded.retain(|id| graph.node(*id).is_some());
         }
+        // It is the active node's, and goes with it.
+        let active = self.active;
+        self.picked_row = self.picked_row.take().filter(|picked| active == Some(picked.node));
         self.displayed = self.displayed.filter(|id| whole.node(*id).is_some());
         self.pinned.retain(|id| whole.node(*id).is_some());
     }

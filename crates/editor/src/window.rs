@@ -13,6 +13,8 @@ use crate::drawable::Detail;
 use crate::panel::data::Data;
 use crate::panel::inspector::Inspector;
 use crate::panel::palette::{DraggedKind, Palette};
+use crate::panel::tour::{Asked, Place};
+use crate::panel::welcome::graphs_in;
 use crate::panel::{PanelContext, help, history, performance, problems};
 use crate::shortcuts::keys_of;
 use crate::view_state::Tool;
@@ -35,9 +37,7 @@ impl App {
         }
         egui::Panel::bottom("status").show(ui, |ui| self.status(ui));
         egui::CentralPanel::no_frame().show(ui, |ui| self.panels(ui));
-        if self.view.keys && !help::keys(ui) {
-            self.view.keys = false;
-        }
+        self.front(ui);
         self.drop_pictures(ui);
         let dropped = ui.input(|i| {
             let paths = i.raw.dropped_files.iter().map(|file| file.path());
@@ -115,14 +115,61 @@ impl App {
                 ui.separator();
                 egui::widgets::global_theme_preference_buttons(ui);
             });
-            if ui.button("Keys").on_hover_text("All keys (F1)").clicked() {
-                self.commands.push(ViewCommand::Keys.into());
-            }
+            ui.menu_button("Help", |ui| self.help_menu(ui));
         });
     }
 
+    fn help_menu(&mut self, ui: &mut Ui) {
+        self.item(ui, "Welcome and examples…", "", true, ViewCommand::Welcome);
+        self.item(ui, "Take the tour", "", true, FileCommand::Tour);
+        ui.separator();
+        self.item(ui, "All keys", "F1", true, ViewCommand::Keys);
+        let node = self.view.active.and_then(|id| self.canvas_graph().node(id));
+        let page = node.map_or("Page of the active node".to_owned(), |node| format!("Page of {}", node.kind_name()));
+        if ui.add_enabled(node.is_some(), egui::Button::new(page)).clicked() {
+            self.maximised = None;
+            dock::reveal(&mut self.tree, Pane::Help);
+            ui.close();
+        }
+        ui.separator();
+        self.item(ui, "About Maquette", "", true, ViewCommand::About);
+    }
+
+    /// What stands before the panels: welcome, tour, keys, version.
+    fn front(&mut self, ui: &mut Ui) {
+        if self.view.keys && !help::keys(ui) {
+            self.view.keys = false;
+        }
+        if self.view.about && !help::about(ui.ctx()) {
+            self.view.about = false;
+        }
+        if self.view.welcome {
+            let recent = &self.settings.recent;
+            let stays = self.welcome.show(ui.ctx(), &self.catalogue, recent, &mut self.commands);
+            self.view.welcome = stays;
+            self.settings.welcomed |= !stays;
+        }
+        let Some(tour) = self.view.tour.filter(|_| self.asking.is_none()) else { return };
+        let rects = tour.places().iter().filter_map(|place| match place {
+            Place::FrontView => self.view_on_screen(Direction::Front),
+            Place::Perspective => self.view_on_screen(Direction::Free),
+            Place::Canvas => self.canvas_on_screen(),
+        });
+        let rects: Vec<_> = rects.collect();
+        match tour.show(ui.ctx(), &rects) {
+            Some(Asked::Next) => self.turn_to(tour.next()),
+            Some(Asked::Leave) => {
+                self.view.tour = None;
+                self.settings.toured = true;
+            }
+            None => {}
+        }
+    }
+
     fn item(&mut self, ui: &mut Ui, text: &str, keys: &str, enabled: bool, command: impl Into<Command>) {
-        if ui.add_enabled(enabled, egui::Button::new(text).shortcut_text(keys)).clicked() {
+        let button = egui::Button::new(text);
+        let button = if keys.is_empty() { button } else { button.shortcut_text(keys) };
+        if ui.add_enabled(enabled, button).clicked() {
             self.commands.push(command.into());
             ui.close();
         }
@@ -139,7 +186,7 @@ impl App {
                 }
             });
         });
-        let examples = examples(&self.document.folder());
+        let examples = graphs_in(&self.document.folder());
         ui.add_enabled_ui(!examples.is_empty(), |ui| {
             ui.menu_button("Graphs beside it", |ui| {
                 for path in examples {
@@ -341,18 +388,6 @@ impl App {
             }
         }
     }
-}
-
-/// The graphs of a folder, or, where it has none, of the folder `graphs` in it: the examples, in a copy of the repository.
-fn examples(folder: &std::path::Path) -> Vec<std::path::PathBuf> {
-    let graphs = |folder: &std::path::Path| {
-        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-        let mut graphs: Vec<_> = entries.map(|entry| entry.path()).filter(|path| is_graph(path)).collect();
-        graphs.sort();
-        graphs
-    };
-    let here = graphs(folder);
-    if here.is_empty() { graphs(&folder.join("graphs")) } else { here }
 }
 
 /// The panels with what they show.

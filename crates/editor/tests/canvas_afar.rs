@@ -43,7 +43,7 @@ fn nodes_are_found_by_their_names_and_selected_moved_and_boxed() {
     let mut window = many(folder.path());
     assert!(window.state().node_on_screen(find(&window, "node 0")).unwrap().width() < 100.0, "seen from afar");
     for index in 0..80 {
-        window.get_by_label(&format!("node {index}"));
+        window.get_by_label(&format!("node node {index}"));
     }
     let place = node_middle(&window, "node 33");
     click_at(&mut window, place);

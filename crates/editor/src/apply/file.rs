@@ -11,14 +11,17 @@ use crate::app::App;
 use crate::command::{FileCommand, FileTarget, GraphCommand};
 use crate::dialog::{Asking, Purpose};
 use crate::document::Document;
+use crate::panel::tour::{self, Tour};
 use crate::view_state::{Tool, ViewState};
 use crate::viewport::Framing;
 use crate::viewport::camera::Direction;
 
 impl App {
     pub(super) fn apply_file(&mut self, context: &egui::Context, command: FileCommand) {
-        let replaces =
-            matches!(command, FileCommand::New | FileCommand::Open(_) | FileCommand::Recover(_) | FileCommand::Quit);
+        let replaces = matches!(
+            command,
+            FileCommand::New | FileCommand::Tour | FileCommand::Open(_) | FileCommand::Recover(_) | FileCommand::Quit
+        );
         if replaces && self.document.is_changed() && !self.is_sure {
             self.asking = Some(Asking::Unsaved(command));
             return;
@@ -26,6 +29,13 @@ impl App {
         self.is_sure = false;
         match command {
             FileCommand::New => self.take_document(Document::new(self.choice.clone())),
+            FileCommand::Tour => match Document::sample(&self.catalogue, tour::GRAPH, self.choice.clone()) {
+                Ok(document) => {
+                    self.take_document(document);
+                    self.turn_to(Tour::Draw);
+                }
+                Err(error) => self.complain(error),
+            },
             FileCommand::OpenDialog => self.choose(Purpose::Open, self.document.folder(), "ron"),
             FileCommand::Open(path) => match Document::open(&self.catalogue, &path, self.choice.clone()) {
                 Ok(document) => {

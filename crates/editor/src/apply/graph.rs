@@ -7,7 +7,7 @@ use maquette_graph::file::Includes;
 use maquette_graph::{Edit, Graph, NodeId, NodeRecord, Source};
 
 use crate::app::App;
-use crate::canvas::{arrange, swap};
+use crate::canvas::{arrange, frames, swap};
 use crate::command::{GraphCommand, NewLink};
 use crate::naming::free_name;
 
@@ -108,6 +108,24 @@ impl App {
                     self.canvas.rects(&self.view.path, &self.view.selection).into_iter().unzip();
                 let places = alignment.places(&rects);
                 self.place(&alignment.name().to_lowercase(), ids.into_iter().zip(places));
+            }
+            GraphCommand::Frame => {
+                let rects = self.canvas.rects(&self.view.path, &self.view.selection);
+                match frames::around(rects.into_iter().map(|(_, rect)| rect)) {
+                    Some(frame) => {
+                        let mut all = self.canvas_graph().frames().to_vec();
+                        all.push(frame);
+                        self.make("frame nodes", vec![Edit::Frames(all)], None);
+                    }
+                    None => self.complain("select the nodes that the frame is to be put around"),
+                }
+            }
+            GraphCommand::Collapse => {
+                let selected = self.selected();
+                let graph = self.canvas_graph();
+                let collapsed = !selected.iter().all(|id| graph.node(*id).is_some_and(|node| node.is_collapsed()));
+                let edits = selected.into_iter().map(|node| Edit::Collapse { node, collapsed }).collect();
+                self.make(if collapsed { "collapse" } else { "open out" }, edits, None);
             }
             GraphCommand::Swap => self.swap(),
         }

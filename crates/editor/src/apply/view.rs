@@ -73,7 +73,7 @@ impl App {
             }
             ViewCommand::Maximise => self.toggle_maximised(context),
             ViewCommand::Stop => {
-                if self.results.progress().is_some() {
+                if !self.close_front() && self.results.progress().is_some() {
                     self.worker.stop();
                     self.tell("stopped: the next change evaluates again");
                 }
@@ -86,7 +86,18 @@ impl App {
                 }
             }
             ViewCommand::Keys => self.view.keys = !self.view.keys,
+            ViewCommand::PickRow(row) => self.view.picked_row = row,
+            ViewCommand::Welcome => self.view.welcome = true,
+            ViewCommand::About => self.view.about = !self.view.about,
         }
+    }
+
+    /// Closes what stands before the panels; says whether something did.
+    fn close_front(&mut self) -> bool {
+        let view = &mut self.view;
+        self.settings.welcomed |= view.welcome;
+        let open = [&mut view.keys, &mut view.about, &mut view.welcome].into_iter().find(|open| **open);
+        open.map(|open| *open = false).is_some()
     }
 
     fn leave_selection(&mut self) {

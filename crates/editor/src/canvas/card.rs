@@ -32,6 +32,8 @@ pub(crate) struct Card {
     pub(super) rows: Vec<usize>,
     /// Whether there are inputs whose rows may be hidden.
     pub(super) has_values: bool,
+    /// Whether only the title is shown; the sockets stand at both ends of it.
+    pub(super) is_collapsed: bool,
     pub(crate) size: Vec2,
 }
 
@@ -43,8 +45,10 @@ impl Card {
         let has_values = inputs.iter().any(|port| port.typed && !port.linked);
         #[expect(clippy::cast_precision_loss, reason = "a few ports")]
         let count = (rows.len() + outputs.len()) as f32;
-        let size = vec2(WIDTH, TITLE + GAP + KIND + count * (GAP + ROW)) + 2.0 * EDGE;
-        Self { id, key: key(id), inputs, outputs, rows, has_values, size }
+        let is_collapsed = node.is_collapsed();
+        let height = if is_collapsed { TITLE } else { TITLE + GAP + KIND + count * (GAP + ROW) };
+        let size = vec2(WIDTH, height) + 2.0 * EDGE;
+        Self { id, key: key(id), inputs, outputs, rows, has_values, is_collapsed, size }
     }
 
     /// What it covers where its corner is there.
@@ -55,16 +59,21 @@ impl Card {
     /// The socket of an input, seen from the node's corner; `None` where its row is hidden.
     pub(super) fn input(&self, index: usize) -> Option<Vec2> {
         let row = self.rows.iter().position(|shown| *shown == index)?;
-        Some(vec2(0.0, Self::row(row)))
+        Some(vec2(0.0, self.row(row, row, self.rows.len())))
     }
 
     /// The socket of an output, seen from the node's corner.
     pub(super) fn output(&self, index: usize) -> Option<Vec2> {
-        (index < self.outputs.len()).then(|| vec2(self.size.x, Self::row(self.rows.len() + index)))
+        let count = self.outputs.len();
+        (index < count).then(|| vec2(self.size.x, self.row(self.rows.len() + index, index, count)))
     }
 
+    /// How far below the corner a socket is, of a row, or, on a collapsed node, of the sockets at one end.
     #[expect(clippy::cast_precision_loss, reason = "a few ports")]
-    fn row(row: usize) -> f32 {
+    fn row(&self, row: usize, at_end: usize, of: usize) -> f32 {
+        if self.is_collapsed {
+            return self.size.y * (at_end as f32 + 0.5) / of.max(1) as f32;
+        }
         EDGE.y + TITLE + GAP + KIND + GAP + row as f32 * (ROW + GAP) + 0.5 * ROW
     }
 }

@@ -30,10 +30,18 @@ fn status_colour(status: Option<&NodeStatus>, visuals: &egui::Visuals) -> Color3
         None => visuals.weak_text_color(),
         Some(NodeStatus::Running(_)) => visuals.hyperlink_color,
         Some(NodeStatus::Done(_) | NodeStatus::Hit) if visuals.dark_mode => Color32::from_rgb(110, 200, 120),
-        Some(NodeStatus::Done(_) | NodeStatus::Hit) => Color32::from_rgb(20, 120, 50),
+        Some(NodeStatus::Done(_) | NodeStatus::Hit) => Color32::from_rgb(14, 102, 42),
         Some(NodeStatus::Failed { .. }) => visuals.error_fg_color,
         Some(NodeStatus::Waiting(_) | NodeStatus::Stopped) => visuals.warn_fg_color,
     }
+}
+
+/// The colours of all that there is to say about how it stands with a node.
+#[cfg(test)]
+pub(crate) fn status_colours(visuals: &egui::Visuals) -> [Color32; 5] {
+    let failed = NodeStatus::Failed { port: None, message: String::new() };
+    let all = [None, Some(NodeStatus::Running(0.5)), Some(NodeStatus::Hit), Some(failed), Some(NodeStatus::Stopped)];
+    all.map(|status| status_colour(status.as_ref(), visuals))
 }
 
 /// Words for how it stands with a node.
@@ -96,7 +104,6 @@ pub(super) fn show(
     face: Face<'_>,
 ) {
     let Face { card, node, status, zoom } = face;
-    let id = card.id;
     let corner = ui.max_rect().min - vec2(f32::from(MARGIN.left), f32::from(MARGIN.top)) - vec2(1.0, 1.0);
     ui.set_width(WIDTH);
     ui.spacing_mut().item_spacing = vec2(4.0, GAP);
@@ -121,21 +128,12 @@ pub(super) fn show(
         return;
     }
     stripe(ui.painter(), card.rect(corner), card, ui.visuals());
+    if card.is_collapsed {
+        line(ui, TITLE, |ui| title(ui, context, face));
+        return;
+    }
     let colour = status_colour(status, ui.visuals());
-    line(ui, TITLE, |ui| {
-        let (rect, response) = ui.allocate_exact_size(vec2(11.0, 14.0), egui::Sense::hover());
-        status_sign(ui.painter(), status, colour, rect.center(), 1.0);
-        response.on_hover_ui(|ui| {
-            ui.label(status_words(status));
-        });
-        let name = RichText::new(node.name()).strong().size(13.5);
-        let name = if node.is_muted() { name.strikethrough().weak() } else { name };
-        ui.add(egui::Label::new(name).truncate()).on_hover_ui(|ui| {
-            let summary = context.is_outermost().then(|| summary(context, id)).flatten().unwrap_or_default();
-            let kind = node.kind().map_or("unknown kind", |kind| kind.description());
-            ui.label(format!("{}: {kind}{summary}", node.kind_name()));
-        });
-    });
+    line(ui, TITLE, |ui| title(ui, context, face));
     line(ui, KIND, |ui| second_line(ui, context, face));
     if let Some(NodeStatus::Running(share)) = status {
         // Over the line below, so that no socket moves because something runs.
@@ -153,11 +151,28 @@ pub(super) fn show(
     }
 }
 
+/// How it stands with the node, and its name.
+fn title(ui: &mut Ui, context: &PanelContext<'_>, face: Face<'_>) {
+    let Face { card, node, status, .. } = face;
+    let (rect, response) = ui.allocate_exact_size(vec2(11.0, 14.0), egui::Sense::hover());
+    status_sign(ui.painter(), status, status_colour(status, ui.visuals()), rect.center(), 1.0);
+    response.on_hover_ui(|ui| {
+        ui.label(status_words(status));
+    });
+    let name = RichText::new(node.name()).strong().size(13.5);
+    let name = if node.is_muted() { name.strikethrough().weak() } else { name };
+    ui.add(egui::Label::new(name).truncate()).on_hover_ui(|ui| {
+        let summary = summary(context, card.id).unwrap_or_default();
+        let kind = node.kind().map_or("unknown kind", |kind| kind.description());
+        ui.label(format!("{}: {kind}{summary}", node.kind_name()));
+    });
+}
+
 /// The kind, or what is wrong; flags and the time of the last run at its end.
 fn second_line(ui: &mut Ui, context: &mut PanelContext<'_>, face: Face<'_>) {
     let Face { card, node, status, .. } = face;
     ui.spacing_mut().button_padding = vec2(3.0, 0.0);
-    let outcome = context.results.outcome(card.id).filter(|_| context.is_outermost());
+    let outcome = context.outcome(card.id);
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         if let Some(outcome) = outcome.filter(|outcome| !outcome.duration.is_zero()) {
             ui.label(RichText::new(time(outcome.duration)).size(10.0).weak());
@@ -180,7 +195,7 @@ fn second_line(ui: &mut Ui, context: &mut PanelContext<'_>, face: Face<'_>) {
 
 /// Size of a title on the canvas that is read at this zoom, in steps, so that the letters need not be drawn anew in every
 /// frame of a zoom.
-fn title_size(zoom: f32) -> f32 {
+pub(super) fn title_size(zoom: f32) -> f32 {
     const SIZES: [f32; 6] = [20.0, 25.0, 31.0, 39.0, 48.0, 56.0];
     let wanted = 11.5 / zoom.max(1e-3);
     SIZES.into_iter().find(|size| *size >= wanted).unwrap_or(SIZES[SIZES.len() - 1])
@@ -191,7 +206,7 @@ fn from_afar(painter: &egui::Painter, rect: egui::Rect, face: Face<'_>, visuals:
     let Face { card, node, status, zoom } = face;
     stripe(painter, rect, card, visuals);
     let scale = (0.62 / zoom.max(1e-3)).clamp(1.4, 3.0);
-    let head = TITLE + KIND + GAP;
+    let head = if card.is_collapsed { TITLE } else { TITLE + KIND + GAP };
     let middle = rect.min + vec2(10.0 + 4.0 * scale, 7.0 + 0.5 * head);
     status_sign(painter, status, status_colour(status, visuals), middle, scale);
     let text = if node.is_muted() { visuals.weak_text_color() } else { visuals.strong_text_color() };
@@ -260,7 +275,7 @@ fn row(ui: &mut Ui, port: &Port, is_output: bool) {
 
 /// What its outputs hold, in a few words.
 fn summary(context: &PanelContext<'_>, id: NodeId) -> Option<String> {
-    let values = context.results.values(id)?;
+    let values = context.values(id)?;
     let lines = values.iter().map(|value| format!("\n{}: {}", value.wire().name(), value.summary()));
     Some(lines.collect())
 }
@@ -285,15 +300,17 @@ fn flags(ui: &mut Ui, context: &mut PanelContext<'_>, card: &Card, node: &Node) 
     {
         asked.push(ViewCommand::Enter(id).into());
     }
-    if context.is_outermost() {
+    // Within a group only what is displayed, because what the whole graph shows stays behind it.
+    let outermost = context.is_outermost();
+    if outermost {
         let pinned = context.view.pinned.contains(&id);
         if flag(ui, signs::PIN, pinned, "pin", "Keep showing it behind what is displayed") {
             asked.push(ViewCommand::Pin(id).into());
         }
-        let displayed = context.view.displayed == Some(id);
-        if flag(ui, signs::DISPLAY, displayed, "display", "Show only this node in the views (D)") {
-            asked.push(ViewCommand::Display(id).into());
-        }
+    }
+    let displayed = if outermost { context.view.displayed } else { context.view.displayed_within } == Some(id);
+    if flag(ui, signs::DISPLAY, displayed, "display", "Show only this node in the views (D)") {
+        asked.push(ViewCommand::Display(id).into());
     }
     context.commands.extend(asked);
 }
@@ -321,6 +338,8 @@ pub(crate) fn menu(ui: &mut Ui, context: &mut PanelContext<'_>, id: NodeId, node
     item(ui, "Cut", "Ctrl+X", GraphCommand::Cut.into());
     item(ui, "Group", "Ctrl+G", GraphCommand::Group.into());
     ui.separator();
+    item(ui, "Frame", "Ctrl+J", GraphCommand::Frame.into());
+    item(ui, if node.is_collapsed() { "Open out" } else { "Collapse" }, "H", GraphCommand::Collapse.into());
     item(ui, "Swap inputs", "Alt+S", GraphCommand::Swap.into());
     item(ui, "Arrange selected", "Shift+L", GraphCommand::ArrangeSelected.into());
     ui.menu_button("Align", |ui| {

@@ -4,6 +4,7 @@
 pub(crate) mod arrange;
 pub(crate) mod card;
 pub(crate) mod face;
+pub(crate) mod frames;
 mod link_drag;
 mod links;
 pub(crate) mod ports;
@@ -14,7 +15,7 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use egui::{PointerButton, Pos2, Rect, Sense};
 use egui_graph::node::EdgeEvent;
-use maquette_graph::{Edit, Graph, NodeId};
+use maquette_graph::{Edit, Graph, Node, NodeId};
 
 use crate::command::{GraphCommand, NewLink, ViewCommand};
 use crate::panel::PanelContext;
@@ -54,6 +55,8 @@ struct Stage<'a> {
 
 /// Points of the screen for a point of the canvas, at least and at most.
 const ZOOM: egui::Rangef = egui::Rangef { min: 0.1, max: 1.5 };
+/// So many nodes are widgets at any zoom.
+const FEW: usize = 120;
 /// How far from a node the pointer may be to do something with it, points of the canvas.
 const REACH: f32 = 34.0;
 /// Points of the canvas between two dots of its background, and of the screen at least.
@@ -66,6 +69,7 @@ pub(crate) struct Canvas {
     places: BTreeMap<Vec<NodeId>, Places>,
     search: Option<Search>,
     drag: LinkDrag,
+    frames: frames::Frames,
     /// The line along which links are cut, on the canvas.
     cut: Vec<Pos2>,
     /// Selected links, by the input at which they end.
@@ -154,7 +158,7 @@ impl Canvas {
             places.take_over(graph);
         }
         if (!places.framed || self.frame_all) && rect.area() > 1.0 {
-            places.frame(rect);
+            places.frame(graph, rect);
             self.frame_all = false;
         }
         let graph_id = egui_graph::id(("canvas", context.view.path.as_slice()));
@@ -167,11 +171,13 @@ impl Canvas {
             cards.all.iter().map(|card| places.view.layout.get(&card.key).map_or(Pos2::ZERO, |at| at.round()));
         let corners = corners.collect();
         let mut is_over_node = false;
+        let mut with_frame = frames::Moved::default();
         let shown = widget.show(&mut places.view, ui, |ui, show| {
             let mut stage = self.stage(ui, cards, corners);
             let mut painted = Vec::new();
             let mut seen = links::Seen::default();
             dots(ui, &stage);
+            with_frame = self.frames.show(ui, context, &stage);
             show.nodes(ui, |nodes, ui| painted = self.nodes(nodes, ui, context, &mut stage)).edges(ui, |edges, ui| {
                 seen = self.links(edges, ui, context, &stage);
                 self.paint(ui, context, &stage, &painted);
@@ -193,6 +199,16 @@ impl Canvas {
             let active = fresh.or(context.view.active.filter(|id| now.contains(id)));
             let rest = now.iter().copied().filter(|id| Some(*id) != active);
             context.ask(ViewCommand::Select(rest.chain(active).collect()));
+        }
+        for (id, place) in &with_frame.nodes {
+            places.view.layout.insert(key(*id), *place);
+        }
+        if with_frame.ended {
+            let nodes: Vec<NodeId> = with_frame.nodes.iter().map(|(id, _)| *id).collect();
+            let nodes = places.moves(&nodes);
+            let edits = std::iter::once(Edit::Frames(with_frame.frames)).chain(nodes).collect();
+            let name = if with_frame.nodes.is_empty() { "change a frame" } else { "move a frame" };
+            context.ask(GraphCommand::Edit { name: name.to_owned(), edits, gesture: None });
         }
         if shown.nodes_moved {
             places.moved(graph, context, &seen);
@@ -276,7 +292,8 @@ impl Canvas {
         let prefix = context.path_of("");
         let results = context.results;
         let cards = stage.cards;
-        let is_afar = face::is_afar(stage.zoom);
+        // What is only painted takes a hover to become what can be dragged, which a pen does not do: only many are.
+        let is_afar = face::is_afar(stage.zoom) && cards.all.len() > FEW;
         let mut painted = Vec::new();
         for (index, card) in cards.all.iter().enumerate() {
             let Some(node) = graph.node(card.id) else { continue };
@@ -293,7 +310,7 @@ impl Canvas {
                 if is_seen {
                     painted.push(index);
                     let response = ui.interact(rect, ui.id().with(("painted", card.id)), Sense::click());
-                    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, node.name()));
+                    response.widget_info(|| named(node, context.view.selection.contains(&card.id)));
                     if response.clicked() {
                         context.ask(ViewCommand::Select(vec![card.id]));
                     }
@@ -351,6 +368,12 @@ impl Canvas {
                 }
             }
             None => {}
+        }
+        let selected = context.view.selection.contains(&id);
+        response.widget_info(|| named(node, selected));
+        // By the keyboard: of a click by the pointer the widget knows.
+        if response.clicked() && ui.input(|i| !i.pointer.any_released()) {
+            context.ask(ViewCommand::Select(vec![id]));
         }
         if response.double_clicked() && node.body().is_some_and(|body| body.graph().is_some()) {
             context.ask(ViewCommand::Enter(id));
@@ -443,6 +466,9 @@ impl Canvas {
             if item(ui, "Select all", "Ctrl+A") {
                 context.ask(ViewCommand::SelectAll);
             }
+            if item(ui, "Frame the selected nodes", "Ctrl+J") {
+                context.ask(GraphCommand::Frame);
+            }
             if item(ui, "Arrange all", "L") {
                 context.ask(GraphCommand::Arrange);
             }
@@ -478,6 +504,11 @@ fn navigate(view: &mut egui_graph::View, ui: &egui::Ui, rect: Rect) {
     let under = seen.min + (pointer - rect.min) / scale;
     let corner = under - (pointer - rect.min) / wanted - moved / wanted;
     view.scene_rect = Rect::from_min_size(corner, rect.size() / wanted);
+}
+
+/// What a node is called for those who do not see it.
+fn named(node: &Node, selected: bool) -> egui::WidgetInfo {
+    egui::WidgetInfo::selected(egui::WidgetType::Button, true, selected, format!("node {}", node.name()))
 }
 
 /// Dots in the background, so that one sees how the canvas moves; fewer where it is seen from afar.
@@ -535,9 +566,12 @@ impl Places {
     }
 
     /// Brings all nodes into view.
-    fn frame(&mut self, rect: Rect) {
+    fn frame(&mut self, graph: &Graph, rect: Rect) {
         let rects = self.cards.all.iter().filter_map(|card| Some(card.rect(*self.view.layout.get(&card.key)?)));
-        let all = rects.reduce(|a, b| a.union(b)).unwrap_or(Rect::from_min_size(Pos2::ZERO, rect.size()));
+        let all = rects
+            .chain(graph.frames().iter().map(frames::rect_of))
+            .reduce(|a, b| a.union(b))
+            .unwrap_or(Rect::from_min_size(Pos2::ZERO, rect.size()));
         let all = all.expand(40.0);
         // Not nearer than one to one, so that a few nodes do not fill the window.
         let size = all.size().max(rect.size());
@@ -550,17 +584,24 @@ impl Places {
         self.framed = true;
     }
 
+    /// The edits that put nodes where they are on the canvas.
+    fn moves(&mut self, nodes: &[NodeId]) -> Vec<Edit> {
+        let mut edits = Vec::new();
+        for node in nodes {
+            if let Some(place) = self.view.layout.get(&key(*node)).map(|place| place.round()) {
+                let position = Some([f64::from(place.x), f64::from(place.y)]);
+                self.known.insert(*node, position);
+                edits.push(Edit::Move { node: *node, position });
+            }
+        }
+        edits
+    }
+
     /// Tells the document where the selected nodes were put, and whether one was dropped on a link.
     fn moved(&mut self, graph: &Graph, context: &mut PanelContext<'_>, seen: &links::Seen) {
         let selection = &context.view.selection;
-        let mut edits = Vec::new();
-        for id in selection {
-            if let Some(place) = self.view.layout.get(&key(*id)) {
-                let position = Some([f64::from(place.x), f64::from(place.y)]);
-                self.known.insert(*id, position);
-                edits.push(Edit::Move { node: *id, position });
-            }
-        }
+        let selected: Vec<NodeId> = selection.iter().copied().collect();
+        let edits = self.moves(&selected);
         let alone = selection.first().copied().filter(|_| selection.len() == 1);
         let dropped = alone.and_then(|id| {
             let card = self.cards.of(id)?;

@@ -7,6 +7,8 @@ pub(crate) mod inspector;
 pub(crate) mod palette;
 pub(crate) mod performance;
 pub(crate) mod problems;
+pub mod tour;
+pub(crate) mod welcome;
 
 use maquette_graph::{Catalogue, Graph, Node, NodeId, Outcome, OutcomeState, Report, Value};
 

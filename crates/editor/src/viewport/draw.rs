@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use maquette_graph::{NodeId, Stroke};
 
-use crate::drawable::{LineRole, Segment};
+use crate::drawable::{LineRole, Segment, Shown};
 use crate::panel::PanelContext;
 use crate::sketch::target::{SketchTarget, points};
 
@@ -129,6 +129,7 @@ pub(crate) fn picture(context: &PanelContext<'_>, of: &PictureOf<'_>, grid: &Gri
     if settings.curves {
         lines.extend(sketches(context, palette, of.camera.direction));
     }
+    lines.extend(picked_row(context));
     Picture {
         view: of.view,
         size: of.pixels,
@@ -137,6 +138,19 @@ pub(crate) fn picture(context: &PanelContext<'_>, of: &PictureOf<'_>, grid: &Gri
         surfaces,
         lines,
     }
+}
+
+/// What the picked row of the data panel speaks of, thick and in front.
+fn picked_row(context: &PanelContext<'_>) -> Option<LineDraw> {
+    let picked = context.view.picked_row.as_ref()?;
+    let node = context.graph().node(picked.node)?;
+    let table = context.report(picked.node)?.tables.iter().find(|table| table.name == picked.table)?;
+    let is_of = |shown: &&Shown| context.is_here(shown) && shown.node == picked.node;
+    let shown = context.results.shown().iter().find(is_of)?;
+    let drawables: Vec<_> = shown.drawables.iter().map(|drawable| &**drawable).collect();
+    let segments = super::picked_row::segments(&drawables, node, table, picked.row);
+    let own = LineDraw { source: LineSource::Own(segments), colour: ACCENT, width: 4.5, on_top: true };
+    Some(own).filter(|own| matches!(&own.source, LineSource::Own(segments) if !segments.is_empty()))
 }
 
 /// The colour of edges that are so many points long on the screen: where they would fill the surface, it is better without.

@@ -8,6 +8,7 @@ pub(crate) mod grid;
 pub(crate) mod move_gizmo;
 pub(crate) mod outline;
 pub(crate) mod pick;
+mod picked_row;
 pub(crate) mod picture;
 pub(crate) mod reference;
 pub(crate) mod selection_tool;

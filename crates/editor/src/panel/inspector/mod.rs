@@ -1,6 +1,7 @@
 //! The inspector: the active node's name, note and inputs, each by its kind. It is made of what kinds declare about
 //! themselves.
 
+mod order;
 mod references;
 mod strokes;
 mod value;
@@ -206,6 +207,9 @@ fn row(ui: &mut Ui, context: &mut PanelContext<'_>, id: NodeId, node: &Node, inp
                 ui.label(RichText::new(text).color(ui.visuals().warn_fg_color));
             }
         },
+    }
+    if order::is_order(input) {
+        order::show(ui, context, id, input, source);
     }
     ui.add_space(4.0);
 }
