@@ -60,6 +60,8 @@ pub enum StartError {
 pub(crate) struct Wanted {
     revision: u64,
     targets: Vec<NodeId>,
+    path: Vec<NodeId>,
+    within: Vec<NodeId>,
     depiction: Depiction,
     examined: Vec<NodeId>,
 }
@@ -260,7 +262,13 @@ impl App {
             graph.node(*id).and_then(|node| node.acting_kind()).is_some_and(|kind| kind.has_examination())
         };
         let examined = active.filter(|id| is_looked_into && measures(id)).into_iter().collect();
-        let wanted = Wanted { revision: self.document.revision(), targets, depiction, examined };
+        // Of a graph that was entered, what is displayed and what the inspector shows.
+        let path = self.view.path.clone();
+        let there = self.canvas_graph();
+        let looked_at = self.view.displayed_within.into_iter().chain(self.view.active).filter(|_| !path.is_empty());
+        let mut within: Vec<NodeId> = looked_at.filter(|id| there.node(*id).is_some()).collect();
+        within.dedup();
+        let wanted = Wanted { revision: self.document.revision(), targets, path, within, depiction, examined };
         if self.submitted.as_ref() == Some(&wanted) {
             return;
         }
@@ -271,6 +279,8 @@ impl App {
             graph: graph.clone(),
             targets: wanted.targets.clone(),
             drawn: wanted.targets.clone(),
+            path: wanted.path.clone(),
+            within: wanted.within.clone(),
             folder: self.document.folder(),
             project: self.document.project(),
             depiction,

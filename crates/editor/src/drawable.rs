@@ -133,6 +133,8 @@ pub(crate) struct Drawable {
 /// What a node puts into the views.
 #[derive(Clone, Debug)]
 pub(crate) struct Shown {
+    /// The nodes that lead to its graph; none for the whole graph.
+    pub(crate) path: Vec<NodeId>,
     pub(crate) node: NodeId,
     pub(crate) drawables: Vec<Arc<Drawable>>,
 }
@@ -144,26 +146,37 @@ pub(crate) struct Drawables {
 }
 
 impl Drawables {
-    /// What these nodes put into the views. What was made before is not made again.
-    pub(crate) fn of(&mut self, evaluation: &Evaluation, nodes: &[NodeId], depiction: Depiction) -> Vec<Shown> {
+    /// What nodes put into the views: those of an evaluation of the whole graph, and of one within nodes. What was made before
+    /// is not made again.
+    pub(crate) fn of(&mut self, evaluated: &[Evaluated<'_>], depiction: Depiction) -> Vec<Shown> {
         let mut used = BTreeMap::new();
         let mut shown = Vec::new();
-        for &node in nodes {
-            let mut drawables = Vec::new();
-            for value in evaluation.values(node).unwrap_or_default() {
-                let key = (value.hash().0, depiction);
-                let known = used.get(&key).or_else(|| self.known.get(&key)).cloned();
-                let drawable = known.unwrap_or_else(|| drawable(value, depiction).map(Arc::new));
-                used.insert(key, drawable.clone());
-                drawables.extend(drawable);
-            }
-            if !drawables.is_empty() {
-                shown.push(Shown { node, drawables });
+        for Evaluated { path, evaluation, nodes } in evaluated {
+            for &node in *nodes {
+                let mut drawables = Vec::new();
+                for value in evaluation.values(node).unwrap_or_default() {
+                    let key = (value.hash().0, depiction);
+                    let known = used.get(&key).or_else(|| self.known.get(&key)).cloned();
+                    let drawable = known.unwrap_or_else(|| drawable(value, depiction).map(Arc::new));
+                    used.insert(key, drawable.clone());
+                    drawables.extend(drawable);
+                }
+                if !drawables.is_empty() {
+                    shown.push(Shown { path: path.to_vec(), node, drawables });
+                }
             }
         }
         self.known = used;
         shown
     }
+}
+
+/// An evaluation of a graph, and the nodes of it that are looked at.
+pub(crate) struct Evaluated<'a> {
+    /// The nodes that lead to the graph; none for the whole graph.
+    pub(crate) path: &'a [NodeId],
+    pub(crate) evaluation: &'a Evaluation,
+    pub(crate) nodes: &'a [NodeId],
 }
 
 fn fresh_id() -> u64 {

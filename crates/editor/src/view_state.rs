@@ -178,6 +178,8 @@ pub struct ViewState {
     pub active: Option<NodeId>,
     /// The node of the whole graph that is shown alone; `None` for the results.
     pub displayed: Option<NodeId>,
+    /// The node of the graph that was entered that is shown alone; `None` for what the whole graph shows.
+    pub displayed_within: Option<NodeId>,
     /// Nodes of the whole graph that are shown as well.
     pub pinned: BTreeSet<NodeId>,
     /// Nodes of the canvas whose inputs with values are shown.
@@ -207,19 +209,21 @@ impl ViewState {
             self.path.pop();
             self.selection.clear();
             self.active = None;
+            self.displayed_within = None;
         }
         let graph = self.path.iter().try_fold(whole, |graph, id| graph.node(*id)?.body()?.graph());
         if let Some(graph) = graph {
             self.selection.retain(|id| graph.node(*id).is_some());
             self.active = self.active.filter(|id| graph.node(*id).is_some());
+            self.displayed_within = self.displayed_within.filter(|id| graph.node(*id).is_some());
             if self.active.is_none() {
                 self.picked_strokes.clear();
             }
             self.expanded.retain(|id| graph.node(*id).is_some());
         }
         // It is the active node's, and goes with it.
-        let (path, active) = (&self.path, self.active);
-        self.picked_row = self.picked_row.take().filter(|picked| path.is_empty() && active == Some(picked.node));
+        let active = self.active;
+        self.picked_row = self.picked_row.take().filter(|picked| active == Some(picked.node));
         self.displayed = self.displayed.filter(|id| whole.node(*id).is_some());
         self.pinned.retain(|id| whole.node(*id).is_some());
     }

@@ -41,6 +41,9 @@ impl App {
             ViewCommand::Display(id) => {
                 if self.view.path.is_empty() {
                     self.view.displayed = if self.view.displayed == Some(id) { None } else { Some(id) };
+                } else {
+                    let shown = self.view.displayed_within == Some(id);
+                    self.view.displayed_within = if shown { None } else { Some(id) };
                 }
             }
             ViewCommand::Pin(id) => {
@@ -100,6 +103,7 @@ impl App {
     fn leave_selection(&mut self) {
         self.view.selection = BTreeSet::new();
         self.view.active = None;
+        self.view.displayed_within = None;
         self.view.picked_strokes.clear();
     }
 

@@ -162,7 +162,7 @@ fn title(ui: &mut Ui, context: &PanelContext<'_>, face: Face<'_>) {
     let name = RichText::new(node.name()).strong().size(13.5);
     let name = if node.is_muted() { name.strikethrough().weak() } else { name };
     ui.add(egui::Label::new(name).truncate()).on_hover_ui(|ui| {
-        let summary = context.is_outermost().then(|| summary(context, card.id)).flatten().unwrap_or_default();
+        let summary = summary(context, card.id).unwrap_or_default();
         let kind = node.kind().map_or("unknown kind", |kind| kind.description());
         ui.label(format!("{}: {kind}{summary}", node.kind_name()));
     });
@@ -172,7 +172,7 @@ fn title(ui: &mut Ui, context: &PanelContext<'_>, face: Face<'_>) {
 fn second_line(ui: &mut Ui, context: &mut PanelContext<'_>, face: Face<'_>) {
     let Face { card, node, status, .. } = face;
     ui.spacing_mut().button_padding = vec2(3.0, 0.0);
-    let outcome = context.results.outcome(card.id).filter(|_| context.is_outermost());
+    let outcome = context.outcome(card.id);
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         if let Some(outcome) = outcome.filter(|outcome| !outcome.duration.is_zero()) {
             ui.label(RichText::new(time(outcome.duration)).size(10.0).weak());
@@ -275,7 +275,7 @@ fn row(ui: &mut Ui, port: &Port, is_output: bool) {
 
 /// What its outputs hold, in a few words.
 fn summary(context: &PanelContext<'_>, id: NodeId) -> Option<String> {
-    let values = context.results.values(id)?;
+    let values = context.values(id)?;
     let lines = values.iter().map(|value| format!("\n{}: {}", value.wire().name(), value.summary()));
     Some(lines.collect())
 }
@@ -300,15 +300,17 @@ fn flags(ui: &mut Ui, context: &mut PanelContext<'_>, card: &Card, node: &Node) 
     {
         asked.push(ViewCommand::Enter(id).into());
     }
-    if context.is_outermost() {
+    // Within a group only what is displayed, because what the whole graph shows stays behind it.
+    let outermost = context.is_outermost();
+    if outermost {
         let pinned = context.view.pinned.contains(&id);
         if flag(ui, signs::PIN, pinned, "pin", "Keep showing it behind what is displayed") {
             asked.push(ViewCommand::Pin(id).into());
         }
-        let displayed = context.view.displayed == Some(id);
-        if flag(ui, signs::DISPLAY, displayed, "display", "Show only this node in the views (D)") {
-            asked.push(ViewCommand::Display(id).into());
-        }
+    }
+    let displayed = if outermost { context.view.displayed } else { context.view.displayed_within } == Some(id);
+    if flag(ui, signs::DISPLAY, displayed, "display", "Show only this node in the views (D)") {
+        asked.push(ViewCommand::Display(id).into());
     }
     context.commands.extend(asked);
 }

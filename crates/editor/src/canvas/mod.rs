@@ -55,6 +55,8 @@ struct Stage<'a> {
 
 /// Points of the screen for a point of the canvas, at least and at most.
 const ZOOM: egui::Rangef = egui::Rangef { min: 0.1, max: 1.5 };
+/// So many nodes are widgets at any zoom.
+const FEW: usize = 120;
 /// How far from a node the pointer may be to do something with it, points of the canvas.
 const REACH: f32 = 34.0;
 /// Points of the canvas between two dots of its background, and of the screen at least.
@@ -222,7 +224,10 @@ impl Canvas {
         if graph.nodes().len() == 0 {
             let text = "empty: press Tab to add a node, or draw in a view with the Sketch tool";
             let font = egui::FontId::proportional(14.0);
-            ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, text, font, ui.visuals().weak_text_color());
+            // The widget's own layer lies over that of the panel.
+            let layer = egui::LayerId::new(egui::Order::Middle, ui.id().with("empty"));
+            let painter = ui.ctx().layer_painter(layer).with_clip_rect(rect);
+            painter.text(rect.center(), egui::Align2::CENTER_CENTER, text, font, ui.visuals().weak_text_color());
         }
     }
 
@@ -231,7 +236,12 @@ impl Canvas {
         if context.is_outermost() {
             return;
         }
-        ui.horizontal(|ui| {
+        let height = ui.spacing().interact_size.y + 6.0;
+        let bar = Rect::from_min_size(ui.available_rect_before_wrap().min, egui::vec2(ui.available_width(), height));
+        ui.painter().rect_filled(bar, 0.0, ui.visuals().panel_fill);
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        ui.allocate_ui_with_layout(bar.size(), layout, |ui| {
+            ui.add_space(6.0);
             let mut asked = None;
             if ui.button(context.document.name()).on_hover_text("Back to the whole graph").clicked() {
                 asked = Some(0);
@@ -290,7 +300,8 @@ impl Canvas {
         let prefix = context.path_of("");
         let results = context.results;
         let cards = stage.cards;
-        let is_afar = face::is_afar(stage.zoom);
+        // What is only painted takes a hover to become what can be dragged, which a pen does not do: only many are.
+        let is_afar = face::is_afar(stage.zoom) && cards.all.len() > FEW;
         let mut painted = Vec::new();
         for (index, card) in cards.all.iter().enumerate() {
             let Some(node) = graph.node(card.id) else { continue };

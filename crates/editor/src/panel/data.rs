@@ -56,16 +56,16 @@ fn order(table: &Table, sorted: Option<(usize, bool)>) -> Vec<usize> {
 
 impl Data {
     pub(crate) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let Some((id, node)) = context.active().filter(|_| context.is_outermost()) else {
-            ui.label(RichText::new("Select a node of the whole graph to see what it gives.").weak());
+        let Some((id, node)) = context.active() else {
+            ui.label(RichText::new("Select a node to see what it gives.").weak());
             return;
         };
         let kind = node.kind();
-        for (index, value) in context.results.values(id).unwrap_or_default().iter().enumerate() {
+        for (index, value) in context.values(id).unwrap_or_default().iter().enumerate() {
             let name = kind.and_then(|kind| kind.outputs().get(index)).map_or("", |output| output.name.as_str());
             ui.label(format!("{name}: {} ({})", value.summary(), value.wire()));
         }
-        let Some(report) = context.results.report(id) else {
+        let Some(report) = context.report(id) else {
             ui.label(RichText::new("It has no result.").weak());
             return;
         };

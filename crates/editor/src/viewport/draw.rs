@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use maquette_graph::{NodeId, Stroke};
 
-use crate::drawable::{LineRole, Segment};
+use crate::drawable::{LineRole, Segment, Shown};
 use crate::panel::PanelContext;
 use crate::sketch::target::{SketchTarget, points};
 
@@ -80,12 +80,14 @@ pub(crate) fn picture(context: &PanelContext<'_>, of: &PictureOf<'_>, grid: &Gri
         lines.push(own(&grid.coarse, palette.coarse, 1.0));
         lines.extend(grid.axes.iter().map(|(axis, line)| own(std::slice::from_ref(line), AXES[*axis], 1.5)));
     }
-    let drawn = context.view.drawn(context.document.graph());
-    let active = context.view.active.filter(|_| context.is_outermost());
+    let active = context.view.active;
     let mut surfaces = Vec::new();
     for shown in context.results.shown() {
-        let is_drawn = drawn.contains(&shown.node);
-        let is_active = active == Some(shown.node);
+        let is_drawn = context.is_drawn(shown);
+        let is_active = context.is_here(shown) && active == Some(shown.node);
+        if context.view.displayed_within.is_some() && !is_drawn && !is_active {
+            continue;
+        }
         for drawable in &shown.drawables {
             let colour = drawable.colour.unwrap_or(CLAY);
             // A selection is shown over its mesh while its node is looked at.
@@ -140,10 +142,11 @@ pub(crate) fn picture(context: &PanelContext<'_>, of: &PictureOf<'_>, grid: &Gri
 
 /// What the picked row of the data panel speaks of, thick and in front.
 fn picked_row(context: &PanelContext<'_>) -> Option<LineDraw> {
-    let picked = context.view.picked_row.as_ref().filter(|_| context.is_outermost())?;
-    let node = context.document.graph().node(picked.node)?;
-    let table = context.results.report(picked.node)?.tables.iter().find(|table| table.name == picked.table)?;
-    let shown = context.results.shown().iter().find(|shown| shown.node == picked.node)?;
+    let picked = context.view.picked_row.as_ref()?;
+    let node = context.graph().node(picked.node)?;
+    let table = context.report(picked.node)?.tables.iter().find(|table| table.name == picked.table)?;
+    let is_of = |shown: &&Shown| context.is_here(shown) && shown.node == picked.node;
+    let shown = context.results.shown().iter().find(is_of)?;
     let drawables: Vec<_> = shown.drawables.iter().map(|drawable| &**drawable).collect();
     let segments = super::picked_row::segments(&drawables, node, table, picked.row);
     let own = LineDraw { source: LineSource::Own(segments), colour: ACCENT, width: 4.5, on_top: true };

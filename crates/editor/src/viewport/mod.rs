@@ -24,7 +24,7 @@ use maquette_geometry::mesh::measure::points_bounds;
 use maquette_graph::NodeId;
 
 use crate::command::ViewCommand;
-use crate::drawable::LineRole;
+use crate::drawable::{LineRole, Shown};
 use crate::panel::PanelContext;
 use crate::sketch::target::{Plane, SketchTarget, points};
 use crate::view_state::Tool;
@@ -119,11 +119,16 @@ impl ViewPane {
     }
 
     fn frame(&mut self, context: &PanelContext<'_>, size: ViewSize) {
-        let all = || bounds(context, |_| true);
+        // What is displayed alone is framed alone, without the strokes around it.
+        let alone = context.view.displayed_within.is_some();
+        let all = || bounds(context, |shown| context.is_drawn(shown) || !alone && context.is_here(shown), |_| !alone);
         let framed = match self.framing {
             Framing::Keep => return,
             Framing::All => all(),
-            Framing::Selected => bounds(context, |node| context.view.selection.contains(&node)).or_else(all),
+            Framing::Selected => {
+                let selected = |node| context.view.selection.contains(&node);
+                bounds(context, |shown| context.is_here(shown) && selected(shown.node), selected).or_else(all)
+            }
         };
         if let Some(framed) = framed {
             self.camera.frame_box(size, framed);
@@ -191,9 +196,9 @@ impl ViewPane {
                 && let Some(at) = response.interact_pointer_pos()
             {
                 let at = at - corner;
-                let shown = context.results.shown();
-                let found = sketch_at(context, &view, at)
-                    .or_else(|| pick::pick(shown, &self.camera, size, at).filter(|_| context.is_outermost()));
+                let here = context.results.shown().iter().filter(|shown| context.is_here(shown)).cloned();
+                let here: Vec<Shown> = here.collect();
+                let found = sketch_at(context, &view, at).or_else(|| pick::pick(&here, &self.camera, size, at));
                 context.ask(ViewCommand::Select(found.into_iter().collect()));
             }
             return;
@@ -272,7 +277,7 @@ impl ViewPane {
             return;
         }
         #[expect(clippy::cast_possible_truncation, reason = "points of the screen")]
-        let tolerance = (context.settings.tolerance / self.camera.metres_per_point(view.size)) as f32;
+        let tolerance = (sketch_tool::tolerance(context, view) / self.camera.metres_per_point(view.size)) as f32;
         if (2.0..400.0).contains(&tolerance) {
             painter.circle_stroke(pointer, tolerance, egui::Stroke::new(1.0, accent.gamma_multiply(0.5)));
         }
@@ -417,13 +422,12 @@ impl ViewPane {
 impl ViewPane {
     /// Numbers the curves of the active node and shows which way they run: what a `sort` decided, for one.
     fn number_curves(&self, ui: &egui::Ui, rect: egui::Rect, context: &PanelContext<'_>, size: ViewSize) {
-        let Some(active) = context.view.active.filter(|_| context.is_outermost() && context.settings.curves) else {
-            return;
-        };
+        let Some(active) = context.view.active.filter(|_| context.settings.curves) else { return };
         let painter = ui.painter().with_clip_rect(rect);
         let screen = |place: &glam::Vec3| self.camera.project(size, place.as_dvec3()).map(|seen| rect.min + seen);
         let accent = egui::Color32::from_rgb(255, 176, 66);
-        for shown in context.results.shown().iter().filter(|shown| shown.node == active) {
+        let of_active = |shown: &&Shown| shown.node == active && context.is_here(shown);
+        for shown in context.results.shown().iter().filter(of_active) {
             for drawable in &shown.drawables {
                 let curves = drawable.lines.iter().filter(|line| line.role == LineRole::Curve);
                 // More numbers than that nobody can read.
@@ -494,8 +498,12 @@ fn sketch_at(context: &PanelContext<'_>, view: &ToolView<'_>, at: egui::Vec2) ->
 }
 
 /// The box around what nodes show, their strokes included.
-fn bounds(context: &PanelContext<'_>, wanted: impl Fn(NodeId) -> bool) -> Option<[DVec3; 2]> {
-    let shown = context.results.shown().iter().filter(|shown| wanted(shown.node));
+fn bounds(
+    context: &PanelContext<'_>,
+    is_wanted: impl Fn(&Shown) -> bool,
+    wanted: impl Fn(NodeId) -> bool,
+) -> Option<[DVec3; 2]> {
+    let shown = context.results.shown().iter().filter(|shown| is_wanted(shown));
     let boxes = shown.flat_map(|shown| shown.drawables.iter().filter_map(|drawable| drawable.bounds));
     let strokes = SketchTarget::all(context.graph()).filter(|target| wanted(target.node)).flat_map(|target| {
         let places: Vec<DVec3> = target.strokes.iter().flat_map(points).map(|p| target.plane.place(p)).collect();

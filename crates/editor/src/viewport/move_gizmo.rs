@@ -111,11 +111,10 @@ fn moved(context: &PanelContext<'_>) -> Option<Moved> {
     let (input, value, is_offset) = vector(context, node)?;
     let anchor = if is_offset {
         // Where the node says that it turns, or else the middle of what it gives.
-        let report = context.results.report(node).filter(|_| context.is_outermost());
-        match report.and_then(pivot) {
+        match context.report(node).and_then(pivot) {
             Some(pivot) => pivot + value,
             None => {
-                let shown = context.results.shown().iter().filter(|shown| shown.node == node && context.is_outermost());
+                let shown = context.results.shown().iter().filter(|shown| shown.node == node && context.is_here(shown));
                 let boxes = shown.flat_map(|shown| shown.drawables.iter().filter_map(|drawable| drawable.bounds));
                 points_bounds(boxes.flatten()).map_or(value, |(low, high)| 0.5 * (low + high))
             }

@@ -34,8 +34,7 @@ impl OutlineError {
     /// Measures again where something changed.
     pub(crate) fn update(&mut self, context: &PanelContext<'_>, direction: Direction) {
         let Some(plane) = Plane::of_view(direction) else { return };
-        let drawn = context.view.drawn(context.document.graph());
-        let shown = context.results.shown().iter().filter(|shown| drawn.contains(&shown.node));
+        let shown = context.results.shown().iter().filter(|shown| context.is_drawn(shown));
         let drawables: Vec<_> = shown.flat_map(|shown| &shown.drawables).collect();
         let ids = drawables.iter().map(|drawable| drawable.id).collect();
         let key = Some((ids, context.document.revision(), context.view.active));

@@ -94,14 +94,8 @@ mod tests {
             closed: *role == LineRole::Section,
             role: *role,
         };
-        Drawable {
-            id: 0,
-            surface: None,
-            lines: lines.iter().map(line).collect(),
-            colour: None,
-            bounds: None,
-            is_selection: false,
-        }
+        let lines = lines.iter().map(line).collect();
+        Drawable { id: 0, is_selection: false, surface: None, lines, colour: None, bounds: None }
     }
 
     fn at(segments: &[Segment]) -> (usize, Option<f32>) {

@@ -149,7 +149,7 @@ impl SelectionTool {
                         return;
                     }
                 };
-                let values = context.results.values(node).unwrap_or_default();
+                let values = context.values(node).unwrap_or_default();
                 let selection = values.iter().find_map(|value| value.get::<wire::Selection>());
                 let Some((mesh, rays)) = selection
                     .and_then(|selection| Some((selection.mesh.clone(), MeshRays::new(&selection.mesh).ok()?)))

@@ -51,7 +51,7 @@ pub(crate) fn caught(
             }
         }
     }
-    for shown in context.results.shown().iter().filter(|_| context.is_outermost()) {
+    for shown in context.results.shown().iter().filter(|shown| context.is_here(shown)) {
         for line in
             shown.drawables.iter().flat_map(|drawable| &drawable.lines).filter(|line| line.role == LineRole::Curve)
         {

@@ -17,7 +17,7 @@ use super::sketch_tool::{REACH, ToolView, active_target};
 const HANDLE: f32 = 9.0;
 /// How far from the box the handle stands that turns it, points.
 const TURN_OFFSET: f32 = 24.0;
-/// What a press of an arrow key moves, metres; with Shift ten times that, with Alt a tenth.
+/// What a press of an arrow key moves, metres; with Shift ten times that, with Ctrl a tenth.
 const NUDGE: f64 = 1e-3;
 const ACCENT: Color32 = Color32::from_rgb(255, 160, 45);
 
@@ -297,7 +297,7 @@ pub(crate) fn nudge(ui: &egui::Ui, context: &mut PanelContext<'_>, view: &ToolVi
     ];
     let mut by = [0.0; 2];
     ui.input_mut(|input| {
-        let step = match (input.modifiers.shift, input.modifiers.alt) {
+        let step = match (input.modifiers.shift, input.modifiers.command) {
             (true, _) => 10.0 * NUDGE,
             (_, true) => 0.1 * NUDGE,
             _ => NUDGE,

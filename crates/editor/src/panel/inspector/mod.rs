@@ -125,7 +125,7 @@ impl Inspector {
 
 /// What the last evaluation said of a node.
 fn outcome(ui: &mut Ui, context: &PanelContext<'_>, id: NodeId) {
-    let Some(outcome) = context.results.outcome(id).filter(|_| context.is_outermost()) else { return };
+    let Some(outcome) = context.outcome(id) else { return };
     match &outcome.state {
         OutcomeState::Failed(failure) => {
             ui.label(RichText::new(failure.to_string()).color(ui.visuals().error_fg_color));

@@ -74,7 +74,7 @@ pub(super) fn show(
     input: &InputSpec,
     source: Option<&Source>,
 ) {
-    let report = context.results.report(id).filter(|_| context.is_outermost());
+    let report = context.report(id);
     let Some((table, column)) = report.and_then(ordered) else { return };
     let (names, why) = names(table, column);
     let free = matches!(source, None | Some(Source::Literal { .. }));
