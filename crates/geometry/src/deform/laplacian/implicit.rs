@@ -80,7 +80,8 @@ impl Implicit {
         )?;
         drop((differences, gradient_columns, laplacian_columns));
         go_on(0.6)?;
-        let factor = Cholesky::factor(&matrix)?;
+        // Gradients of two rings are compared, each of which takes in another ring.
+        let factor = Cholesky::factor_along(&matrix, &patch.graph(4))?;
         go_on(1.0)?;
         Ok(Self { gradients, laplacians, coordinates, pairs, rim, factor })
     }

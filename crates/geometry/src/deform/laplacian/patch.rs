@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::error::BindError;
 use super::handle::Holds;
+use crate::linear_solver::nested_dissection::Graph;
 use crate::mesh::adjacency::Adjacency;
 use crate::mesh::manifold::ManifoldReport;
 use crate::mesh::triangulate::polygon_triangles;
@@ -108,6 +109,12 @@ impl Patch {
     /// Number of vertices.
     pub fn len(&self) -> usize {
         self.vertices.len()
+    }
+
+    /// The free vertices as unknowns of a matrix that couples them over `reach` edges.
+    pub fn graph(&self, reach: u32) -> Graph {
+        let rings = (0..self.free as u32).map(|vertex| self.adjacency.ring(vertex));
+        Graph::new(&self.points[..self.free], rings, reach)
     }
 
     /// Weights of the edges at each vertex, by its neighbours in ascending order: the cotangents of both angles across,
