@@ -19,6 +19,26 @@ fn chosen(selection: Result<Selection, SelectError>) -> Vec<u32> {
     selection.unwrap().vertices()
 }
 
+fn by_shape(mesh: &Mesh, shape: &Shape<'_>, falloff: f64) -> Result<Selection, SelectError> {
+    super::by_shape(mesh, shape, falloff, &|_| true).map(Option::unwrap)
+}
+
+fn component_nearest(mesh: &Mesh, point: DVec3) -> Result<Selection, SelectError> {
+    super::component_nearest(mesh, point, &|_| true).map(Option::unwrap)
+}
+
+fn boundary_loop_nearest(mesh: &Mesh, point: DVec3) -> Result<Selection, SelectError> {
+    super::boundary_loop_nearest(mesh, point, &|_| true).map(Option::unwrap)
+}
+
+fn geodesic(mesh: &Mesh, points: &[DVec3], distance: f64, falloff: f64) -> Result<Selection, SelectError> {
+    super::geodesic(mesh, points, distance, falloff, &|_| true).map(Option::unwrap)
+}
+
+fn by_normal(mesh: &Mesh, direction: DVec3, angle: f64, falloff: f64) -> Result<Selection, SelectError> {
+    super::by_normal(mesh, direction, angle, falloff, &|_| true).map(Option::unwrap)
+}
+
 #[test]
 fn shapes_take_what_is_inside() {
     let net = net();
