@@ -115,6 +115,28 @@ fn four_fingers_bend_and_the_palm_stays() {
 }
 
 #[test]
+fn fingers_curl_into_a_fist() {
+    let saved = Saved::load("fist");
+    let tips = ["index tip", "middle tip", "ring tip", "little tip"];
+    let all = [&["fist", "hand at rest", "figures", "bent", "hand"], &tips[..]].concat();
+    let evaluation = saved.evaluate(&mut Evaluator::default(), &all);
+    let (hand, bent) = (mesh(&saved, &evaluation, "hand", "selected"), mesh(&saved, &evaluation, "bent", "mesh"));
+    let palm = DVec3::new(0.49, 0.945, 0.262);
+    for tip in &tips[1..] {
+        let moved = places(&saved, &evaluation, tip, hand, bent);
+        let mean = |of: &dyn Fn(&(DVec3, DVec3)) -> DVec3| moved.iter().map(of).sum::<DVec3>() / moved.len() as f64;
+        let (before, after) = (mean(&|m| m.0).distance(palm), mean(&|m| m.1).distance(palm));
+        assert!(after < 0.6 * before, "{tip}: {before} to {after}");
+        // Turned by 200 degrees with all around it: no edge of the tip is longer or shorter.
+        let apart = |m: &(DVec3, DVec3), n: &(DVec3, DVec3)| m.0.distance(n.0) - m.1.distance(n.1);
+        assert!(moved.windows(2).all(|pair| apart(&pair[0], &pair[1]).abs() < 1e-12), "{tip}");
+    }
+    let volume = figure(&saved, &evaluation, "figures", "volume-ratio");
+    let edges = figure(&saved, &evaluation, "figures", "rms-edge-error");
+    assert!((volume - 1.0).abs() < 0.11 && edges < 0.12, "{volume}, {edges}");
+}
+
+#[test]
 fn a_body_raises_an_arm_bends_a_knee_and_turns_its_head() {
     let saved = Saved::load("body-posed");
     let all = ["moved", "still", "figures", "posed", "body", "lower arm and hand", "calf and foot", "head", "bound"];
