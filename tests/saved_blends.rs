@@ -20,29 +20,6 @@ use maquette_geometry::surface::ripple;
 use maquette_graph::{Cell, Evaluation, Evaluator, OutcomeState, Report, file};
 use maquette_nodes::wire;
 
-fn report<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str) -> &'a Report {
-    match &evaluation.outcome(saved.node(node)).unwrap().state {
-        OutcomeState::Done { report, .. } => report,
-        other => panic!("{node}: {other:?}"),
-    }
-}
-
-fn figure(saved: &Saved, evaluation: &Evaluation, node: &str, name: &str) -> f64 {
-    report(saved, evaluation, node).figure(name).unwrap_or_else(|| panic!("{node}.{name}")).value
-}
-
-fn mesh<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str) -> &'a Mesh {
-    &evaluation.value::<wire::Mesh>(saved.node(node), "mesh").unwrap().0
-}
-
-fn sections<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str, output: &str) -> &'a Sections {
-    &evaluation.value::<wire::Sections>(saved.node(node), output).unwrap().0
-}
-
-fn borders<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str, output: &str) -> &'a [Border] {
-    &evaluation.value::<wire::Borders>(saved.node(node), output).unwrap().0
-}
-
 /// One sound, closed shell that faces outwards.
 fn sound(name: &str, mesh: &Mesh) -> MeshCheck {
     let found = check(mesh);
@@ -55,11 +32,11 @@ fn sound(name: &str, mesh: &Mesh) -> MeshCheck {
 /// The seams of a `join-parts` node, within `within` of the node: as many as wanted, whole, without a gap, their angles
 /// (those of the meshes' normals) below `degrees`.
 fn smooth_seams(saved: &Saved, evaluation: &Evaluation, [node, within]: [&str; 2], wanted: f64, degrees: f64) {
-    let of = |name: &str| figure(saved, evaluation, node, &format!("{within}{name}"));
+    let of = |name: &str| saved.figure(evaluation, node, &format!("{within}{name}"));
     assert_eq!((of("seams"), of("open-loops"), of("t-junctions")), (wanted, 0.0, 0.0), "{node}");
     assert_eq!(of("largest-gap"), 0.0, "{node}: welded to the bit");
     assert!(of("largest-angle") < degrees, "{node}: {} degrees", of("largest-angle"));
-    let table = report(saved, evaluation, node).table(&format!("{within}welds")).unwrap();
+    let table = saved.report(evaluation, node).table(&format!("{within}welds")).unwrap();
     let whole = table.columns.iter().position(|column| column.name == "whole").unwrap();
     assert!(table.rows.iter().all(|row| row[whole] == Cell::from(true)), "{node}");
 }
@@ -106,11 +83,11 @@ fn a_transition_joins_an_ellipsoid_and_a_cylinder() {
     let mut evaluator = Evaluator::default();
     let targets = ["figure", "boundaries", "joined", "transition", "both borders"];
     let evaluation = saved.evaluate(&mut evaluator, &targets);
-    let whole = mesh(&saved, &evaluation, "joined").clone();
+    let whole = saved.mesh(&evaluation, "joined", "mesh").clone();
     sound("blend", &whole);
     smooth_seams(&saved, &evaluation, ["joined", ""], 2.0, 0.1);
-    let blend = sections(&saved, &evaluation, "transition", "sections");
-    let ends = borders(&saved, &evaluation, "both borders", "borders");
+    let blend = saved.sections(&evaluation, "transition", "sections");
+    let ends = saved.borders(&evaluation, "both borders", "borders");
     for (from_end, border) in [(false, &ends[0]), (true, &ends[1])] {
         assert!(leaves(blend, from_end, border) < 0.1, "{}", leaves(blend, from_end, border));
     }
@@ -132,7 +109,7 @@ fn a_transition_joins_an_ellipsoid_and_a_cylinder() {
         }
     }
     let evaluation = saved.evaluate(&mut evaluator, &targets);
-    let fine = mesh(&saved, &evaluation, "joined");
+    let fine = saved.mesh(&evaluation, "joined", "mesh");
     sound("blend", fine);
     smooth_seams(&saved, &evaluation, ["joined", ""], 2.0, 0.1);
     // Slivers in the strip along a cut fold more than what is beside them; normals, which are seen, do not.
@@ -144,19 +121,19 @@ fn both_arms_are_blended_into_the_trunk() {
     let saved = Saved::load("shoulder");
     let targets = ["figure", "sketch lines", "left shoulder", "both shoulders", "arm with its end"];
     let evaluation = saved.evaluate(&mut Evaluator::default(), &targets);
-    let whole = mesh(&saved, &evaluation, "both shoulders");
+    let whole = saved.mesh(&evaluation, "both shoulders", "mesh");
     sound("shoulder", whole);
     for node in ["left shoulder", "both shoulders"] {
         smooth_seams(&saved, &evaluation, [node, "joined/"], 2.0, 0.1);
-        let blend = sections(&saved, &evaluation, node, "rings");
+        let blend = saved.sections(&evaluation, node, "rings");
         assert!(ripple(blend).sign_changes <= 3, "{node}: {:?}", ripple(blend));
         assert_eq!((blend.nodes(), blend.len()), (64, 14));
     }
     // The limb is as it was, and its ring is the blend's last.
-    let arm = mesh(&saved, &evaluation, "arm with its end");
+    let arm = saved.mesh(&evaluation, "arm with its end", "mesh");
     let distance = MeshDistance::new(whole).unwrap();
     assert!(arm.positions().iter().all(|p| distance.nearest(*p).distance < 1e-12));
-    assert_eq!(figure(&saved, &evaluation, "left shoulder", "grown/open limb/faces-replaced"), 0.0);
+    assert_eq!(saved.figure(&evaluation, "left shoulder", "grown/open limb/faces-replaced"), 0.0);
     // Left and right are mirror images.
     let off = whole.positions().iter().map(|p| distance.nearest(*p * DVec3::new(-1.0, 1.0, 1.0)).distance);
     assert!(off.fold(0.0, f64::max) < 5e-5);
@@ -176,9 +153,9 @@ fn the_same_part_joins_legs_and_a_neck() {
     let saved = Saved { catalogue, graph: loaded.graph };
     let evaluation = saved.evaluate(&mut Evaluator::default(), &["out", "with left", "with legs", "whole"]);
     for node in ["with left", "with legs", "whole"] {
-        sound(node, mesh(&saved, &evaluation, node));
+        sound(node, saved.mesh(&evaluation, node, "mesh"));
         smooth_seams(&saved, &evaluation, [node, "joined/"], 2.0, 0.15);
-        let blend = sections(&saved, &evaluation, node, "rings");
+        let blend = saved.sections(&evaluation, node, "rings");
         assert!(ripple(blend).sign_changes <= 3, "{node}: {:?}", ripple(blend));
     }
 }
@@ -188,18 +165,18 @@ fn a_patch_closes_an_opening_and_continues_the_hull_on_all_sides() {
     let saved = Saved::load("patch");
     let targets = ["craft", "curve network", "joined", "patch", "sides", "even ridge", "hull surface"];
     let evaluation = saved.evaluate(&mut Evaluator::default(), &targets);
-    let whole = mesh(&saved, &evaluation, "joined");
+    let whole = saved.mesh(&evaluation, "joined", "mesh");
     sound("patch", whole);
     // Below 0.1 degrees along the sides; the normals of both meshes differ a little more beside the corners.
     smooth_seams(&saved, &evaluation, ["joined", ""], 1.0, 0.3);
     // Drawn curves are reproduced: the ridge, the sides.
-    let patch = sections(&saved, &evaluation, "patch", "sections");
+    let patch = saved.sections(&evaluation, "patch", "sections");
     let ridge = &evaluation.value::<wire::Curves>(saved.node("even ridge"), "curves").unwrap().0[0];
     let distance = MeshDistance::new(whole).unwrap();
     let off = ridge.points().iter().map(|p| distance.nearest(*p).distance).fold(0.0, f64::max);
     // The ridge leaves the hull by a few degrees and is bent to leave it smoothly: 2.4 mm where it is highest.
     assert!(off < 3e-3, "{off}");
-    let sides = borders(&saved, &evaluation, "sides", "sides");
+    let sides = saved.borders(&evaluation, "sides", "sides");
     assert_eq!(sides.len(), 4);
     let last = patch.len() - 1;
     let edge = patch.section(0).iter().chain(patch.section(last));
@@ -211,7 +188,7 @@ fn a_patch_closes_an_opening_and_continues_the_hull_on_all_sides() {
     let fold = steepest_fold(whole, |p| p.y > 0.06);
     assert!(fold < 10.0, "{fold}");
     // Off the patch the hull is as it was.
-    let hull = mesh(&saved, &evaluation, "hull surface");
+    let hull = saved.mesh(&evaluation, "hull surface", "mesh");
     let low = hull.positions().iter().filter(|p| p.y < 0.07);
     assert!(low.map(|p| distance.nearest(*p).distance).fold(0.0, f64::max) < 1e-12);
 }
@@ -221,12 +198,12 @@ fn chest_and_waist_are_drawn() {
     let saved = Saved::load("chest");
     let targets = ["figure", "drawn contours", "surface", "shaped", "trunk", "even contours"];
     let evaluation = saved.evaluate(&mut Evaluator::default(), &targets);
-    let whole = mesh(&saved, &evaluation, "surface");
+    let whole = saved.mesh(&evaluation, "surface", "mesh");
     sound("chest", whole);
     let contours = &evaluation.value::<wire::Curves>(saved.node("even contours"), "curves").unwrap().0;
     let (round, shaped) =
-        (sections(&saved, &evaluation, "trunk", "sections"), sections(&saved, &evaluation, "shaped", "sections"));
-    let table = report(&saved, &evaluation, "shaped").table("contours").unwrap();
+        (saved.sections(&evaluation, "trunk", "sections"), saved.sections(&evaluation, "shaped", "sections"));
+    let table = saved.report(&evaluation, "shaped").table("contours").unwrap();
     assert_eq!(table.rows.len(), 2);
     for (section, contour) in [(46, &contours[0]), (24, &contours[1])] {
         let on = |p: &DVec3, curve: &Curve| closest(curve, *p).distance;

@@ -13,7 +13,7 @@ mod graphs;
 
 use fairness::{crease, crossings, leaving, off, off_rails};
 use glam::DVec3;
-use graphs::Saved;
+use graphs::{Saved, extent};
 use maquette_geometry::border::Border;
 use maquette_geometry::curve::{ArcLength, Curve, closest};
 use maquette_geometry::mesh::{Mesh, MeshDistance, check, measure};
@@ -21,30 +21,6 @@ use maquette_geometry::sections::Sections;
 use maquette_geometry::surface::ripple;
 use maquette_graph::{Evaluation, Evaluator, EventLog, Literal, OutcomeState};
 use maquette_nodes::wire;
-
-fn mesh<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str) -> &'a Mesh {
-    &evaluation.value::<wire::Mesh>(saved.node(node), "mesh").unwrap().0
-}
-
-fn sections<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str) -> &'a Sections {
-    &evaluation.value::<wire::Sections>(saved.node(node), "sections").unwrap().0
-}
-
-fn curves<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str, output: &str) -> &'a [Curve] {
-    &evaluation.value::<wire::Curves>(saved.node(node), output).unwrap().0
-}
-
-fn largest_gap(saved: &Saved, evaluation: &Evaluation, node: &str) -> f64 {
-    match &evaluation.outcome(saved.node(node)).unwrap().state {
-        OutcomeState::Done { report, .. } => report.figure("largest-gap").unwrap().value,
-        other => panic!("{node}: {other:?}"),
-    }
-}
-
-fn extent(mesh: &Mesh) -> DVec3 {
-    let (low, high) = measure::bounds(mesh).unwrap();
-    high - low
-}
 
 /// Everything that must hold for any of these surfaces: one sound sheet with so many borders, that does not cross
 /// itself, bends by less than `fold` degrees from face to face, and faces the `front` as a whole.
@@ -62,9 +38,9 @@ fn assert_fair(name: &str, mesh: &Mesh, borders: usize, fold: f64, front: DVec3)
 
 /// Rails and the first and last profile are where they were drawn: beyond the gaps that were bridged, to round-off.
 fn assert_as_drawn(saved: &Saved, evaluation: &Evaluation, rails: &[Curve], profiles: &[Curve], most: f64) {
-    let made = sections(saved, evaluation, "sections");
+    let made = saved.sections(evaluation, "sections", "sections");
     let size = made.diagonal();
-    let gap = largest_gap(saved, evaluation, "sections");
+    let gap = saved.figure(evaluation, "sections", "largest-gap");
     assert!(gap < most, "{gap} m bridged");
     let off_rails = off_rails(made, rails);
     // Pinned at profiles between the ends, what closes the gaps swings over by some percent.
@@ -82,16 +58,16 @@ fn the_mouth_passes_five_profiles_at_once() {
     let mut targets = saved.results();
     targets.extend(["surface", "sections", "wanted rails", "wanted profiles", "skin alone", "lips alone"]);
     let evaluation = saved.evaluate(&mut Evaluator::default(), &targets);
-    let whole = mesh(&saved, &evaluation, "surface");
+    let whole = saved.mesh(&evaluation, "surface", "mesh");
     // Its corners are narrow folds.
     assert_fair("mouth", whole, 2, 65.0, DVec3::Z);
-    let rails = curves(&saved, &evaluation, "wanted rails", "curves");
-    let profiles = curves(&saved, &evaluation, "wanted profiles", "curves");
+    let rails = saved.curves(&evaluation, "wanted rails", "curves");
+    let profiles = saved.curves(&evaluation, "wanted profiles", "curves");
     let names: Vec<&str> = profiles.iter().map(Curve::name).collect();
     assert_eq!((rails.len(), names), (8, vec!["skin", "vermilion", "crest", "parting", "inside"]));
     assert_as_drawn(&saved, &evaluation, rails, profiles, 4e-5);
     // Each profile between them is a section.
-    let made = sections(&saved, &evaluation, "sections");
+    let made = saved.sections(&evaluation, "sections", "sections");
     for profile in &profiles[1..4] {
         let on = made.iter().map(|row| off(row, profile)).fold(f64::MAX, f64::min);
         assert!(on < 4e-5, "{}: {on}", profile.name());
@@ -103,7 +79,7 @@ fn the_mouth_passes_five_profiles_at_once() {
     let (low, high) = measure::bounds(whole).unwrap();
     assert!((low.x + high.x).abs() < 1e-5, "left and right are alike: {low} {high}");
     // Lips and skin are the whole, cut in two.
-    let area = |node| measure::area(mesh(&saved, &evaluation, node));
+    let area = |node| measure::area(saved.mesh(&evaluation, node, "mesh"));
     let parts = area("skin alone") + area("lips alone");
     assert!((parts / measure::area(whole) - 1.0).abs() < 1e-3, "{parts}");
 }
@@ -128,19 +104,19 @@ fn the_shoulder_caps_leave_the_bust_without_gap_or_crease() {
     let mut targets = saved.results();
     targets.extend(["bust", "left armhole", "cap", "cap surface", "even contour", "both caps"]);
     let evaluation = saved.evaluate(&mut Evaluator::default(), &targets);
-    let cap = mesh(&saved, &evaluation, "cap surface");
+    let cap = saved.mesh(&evaluation, "cap surface", "mesh");
     assert_fair("cap", cap, 1, 8.0, DVec3::X);
-    let bust = mesh(&saved, &evaluation, "bust");
+    let bust = saved.mesh(&evaluation, "bust", "mesh");
     let found = check(bust);
     assert!(found.is_sound() && found.boundary_loops == 2 && measure::signed_volume(bust) > 0.0, "{found}");
 
     let border = &evaluation.value::<wire::Borders>(saved.node("left armhole"), "borders").unwrap().0[0];
-    let made = sections(&saved, &evaluation, "cap");
+    let made = saved.sections(&evaluation, "cap", "sections");
     let (last, middle) = (made.len() - 1, made.nodes() / 2);
     assert!(made.is_pole(0) && made.is_pole(last));
-    let contour = &curves(&saved, &evaluation, "even contour", "curves")[0];
+    let contour = &saved.curves(&evaluation, "even contour", "curves")[0];
     let ridge: Vec<DVec3> = made.iter().map(|row| row[middle]).collect();
-    let gap = largest_gap(&saved, &evaluation, "cap");
+    let gap = saved.figure(&evaluation, "cap", "largest-gap");
     assert!(gap < 5e-6 && off(&ridge, contour) <= gap + 1e-12, "{gap} {}", off(&ridge, contour));
     // C0 and C1 along the whole joint, at every row on both sides.
     for row in 1..last {
@@ -154,7 +130,7 @@ fn the_shoulder_caps_leave_the_bust_without_gap_or_crease() {
     }
     assert!(ripple(made).sign_changes <= 4, "{:?}", ripple(made));
     // The caps widen the bust, and are mirror images.
-    let both = mesh(&saved, &evaluation, "both caps");
+    let both = saved.mesh(&evaluation, "both caps", "mesh");
     let (low, high) = measure::bounds(both).unwrap();
     assert!((low.x + high.x).abs() < 1e-12 && (high.x - 0.181).abs() < 2e-3, "{low} {high}");
     assert!(high.x > measure::bounds(bust).unwrap().1.x + 0.02);
@@ -166,20 +142,20 @@ fn the_eye_socket_closes_around_the_eyeball_and_stays_outside_it() {
     let mut targets = saved.results();
     targets.extend(["surface", "sections", "sorted", "ball surface"]);
     let evaluation = saved.evaluate(&mut Evaluator::default(), &targets);
-    let socket = mesh(&saved, &evaluation, "surface");
+    let socket = saved.mesh(&evaluation, "surface", "mesh");
     assert_fair("eye socket", socket, 2, 26.0, DVec3::Z);
-    let rails = curves(&saved, &evaluation, "sorted", "rails");
-    let closed = curves(&saved, &evaluation, "sorted", "closed");
+    let rails = saved.curves(&evaluation, "sorted", "rails");
+    let closed = saved.curves(&evaluation, "sorted", "closed");
     assert_eq!(rails.len(), 8);
     assert_as_drawn(&saved, &evaluation, rails, closed, 4e-6);
-    let made = sections(&saved, &evaluation, "sections");
+    let made = saved.sections(&evaluation, "sections", "sections");
     assert!(ripple(made).sign_changes <= 4, "{:?}", ripple(made));
     // The eyeball is a sphere of 12 mm about the origin; the lids are 2 mm from it at most, at their edge 0.4 mm.
     let nearest = places_on(socket).map(DVec3::length).fold(f64::MAX, f64::min);
     assert!(nearest > 0.0121, "{nearest} m from the middle of the eyeball");
     let edge = made.section(made.len() - 1).iter().map(|p| (p.length() - 0.0124).abs()).fold(0.0, f64::max);
     assert!(edge < 1e-5, "the edge of the lids is {edge} m off the sphere it was drawn on");
-    let eyeball = mesh(&saved, &evaluation, "ball surface");
+    let eyeball = saved.mesh(&evaluation, "ball surface", "mesh");
     let found = check(eyeball);
     assert!(found.is_sound() && found.closed && measure::signed_volume(eyeball) > 0.0, "{found}");
 }
@@ -216,16 +192,16 @@ fn the_bracer_is_a_thin_sheet_outside_the_arm() {
     let mut targets = saved.results();
     targets.extend(["surface", "sections", "skin", "rails on the sleeve", "ends on the sleeve"]);
     let evaluation = saved.evaluate(&mut Evaluator::default(), &targets);
-    let bracer = mesh(&saved, &evaluation, "surface");
+    let bracer = saved.mesh(&evaluation, "surface", "mesh");
     assert_fair("bracer", bracer, 1, 4.0, DVec3::Z);
-    let rails = curves(&saved, &evaluation, "rails on the sleeve", "curves");
-    let ends = curves(&saved, &evaluation, "ends on the sleeve", "curves");
+    let rails = saved.curves(&evaluation, "rails on the sleeve", "curves");
+    let ends = saved.curves(&evaluation, "ends on the sleeve", "curves");
     assert_eq!((rails.len(), ends.len()), (5, 2));
     assert_as_drawn(&saved, &evaluation, rails, ends, 4e-6);
-    let made = sections(&saved, &evaluation, "sections");
+    let made = saved.sections(&evaluation, "sections", "sections");
     assert!(!made.is_closed() && ripple(made).sign_changes <= 3, "{:?}", ripple(made));
 
-    let skin = mesh(&saved, &evaluation, "skin");
+    let skin = saved.mesh(&evaluation, "skin", "mesh");
     let found = check(skin);
     assert!(found.is_sound() && found.closed && measure::signed_volume(skin) > 0.0, "{found}");
     let arm = MeshDistance::new(skin).unwrap();
@@ -246,13 +222,13 @@ fn the_knee_guard_has_no_crease_between_its_four_patches() {
     let mut targets = saved.results();
     targets.extend(["surface", "sections", "sorted"]);
     let evaluation = saved.evaluate(&mut evaluator, &targets);
-    let guard = mesh(&saved, &evaluation, "surface");
+    let guard = saved.mesh(&evaluation, "surface", "mesh");
     assert_fair("knee guard", guard, 1, 6.0, DVec3::Z);
-    let rails = curves(&saved, &evaluation, "sorted", "rails");
-    let rim = curves(&saved, &evaluation, "sorted", "closed");
-    let made = sections(&saved, &evaluation, "sections");
+    let rails = saved.curves(&evaluation, "sorted", "rails");
+    let rim = saved.curves(&evaluation, "sorted", "closed");
+    let made = saved.sections(&evaluation, "sections", "sections");
     assert_eq!((made.rails(), made.nodes(), rails.len()), (&[0, 33, 66, 97][..], 128, 4));
-    let gap = largest_gap(&saved, &evaluation, "sections");
+    let gap = saved.figure(&evaluation, "sections", "largest-gap");
     assert!(gap < 2e-6 && off_rails(made, rails) <= gap + 1e-12 * made.diagonal(), "{gap}");
     assert!(off(made.section(0), &rim[0]) < 1e-12 && made.is_pole(made.len() - 1));
     assert!(ripple(made).sign_changes <= 3, "{:?}", ripple(made));
@@ -265,7 +241,7 @@ fn the_knee_guard_has_no_crease_between_its_four_patches() {
     let mut creases = |weights: &str| {
         saved.graph.set(saved.node("sections"), "weights", Literal::Choice(weights.into())).unwrap();
         let evaluation = saved.evaluate(&mut evaluator, &["sections"]);
-        let made = sections(&saved, &evaluation, "sections").clone();
+        let made = saved.sections(&evaluation, "sections", "sections").clone();
         made.rails().iter().map(|column| crease(&made, *column)).fold(0.0, f64::max)
     };
     let (smooth, linear) = (creases("smooth"), creases("linear"));

@@ -19,23 +19,6 @@ use maquette_geometry::surface::ripple;
 use maquette_graph::{Evaluation, Evaluator, WireType};
 use maquette_nodes::wire;
 
-fn mesh<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str) -> &'a Mesh {
-    &evaluation.value::<wire::Mesh>(saved.node(node), "mesh").unwrap().0
-}
-
-fn sections<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str) -> &'a Sections {
-    &evaluation.value::<wire::Sections>(saved.node(node), "sections").unwrap().0
-}
-
-fn curves<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str, output: &str) -> &'a [Curve] {
-    &evaluation.value::<wire::Curves>(saved.node(node), output).unwrap().0
-}
-
-fn bounds(mesh: &Mesh) -> (DVec3, DVec3) {
-    let first = mesh.positions()[0];
-    mesh.positions().iter().fold((first, first), |(low, high), p| (low.min(*p), high.max(*p)))
-}
-
 /// Largest distance of a curve's points from a mesh, metres.
 fn farthest(mesh: &Mesh, curve: &Curve) -> f64 {
     let distance = MeshDistance::new(mesh).unwrap();
@@ -196,17 +179,17 @@ fn the_vest_passes_through_its_five_rails_its_hem_its_neckline_and_its_chest() {
     let mut saved = Saved::load("vest");
     let mut evaluator = Evaluator::default();
     let evaluation = saved.evaluate(&mut evaluator, &["surface", "shaped", "sorted", "even chest", "vest"]);
-    let vest = mesh(&saved, &evaluation, "surface").clone();
+    let vest = saved.mesh(&evaluation, "surface", "mesh").clone();
     assert_eq!((vest.positions().len(), vest.polygon_count()), (3840, 3760));
     assert_fair("vest", &vest, false, 25.0);
-    let (low, high) = bounds(&vest);
+    let (low, high) = measure::bounds(&vest).unwrap();
     assert!(low.distance(DVec3::new(-0.1678, 0.93, -0.0862)) < 1e-4, "{low}");
     assert!(high.distance(DVec3::new(0.1678, 1.4498, 0.1511)) < 5e-4, "{high}");
     // Left and right are mirror images.
     assert!((low.x + high.x).abs() < 1e-4, "{} {}", low.x, high.x);
 
-    let rails = curves(&saved, &evaluation, "sorted", "rails").to_vec();
-    let closed = curves(&saved, &evaluation, "sorted", "closed").to_vec();
+    let rails = saved.curves(&evaluation, "sorted", "rails").to_vec();
+    let closed = saved.curves(&evaluation, "sorted", "closed").to_vec();
     let names: Vec<_> = rails.iter().map(Curve::name).collect();
     assert_eq!(names, ["left back mirrored", "left side mirrored", "front", "left side", "left back"]);
     // The mesh's first and last ring lie on the drawn boundaries; between them edges 12 mm long cut the bends.
@@ -216,9 +199,9 @@ fn the_vest_passes_through_its_five_rails_its_hem_its_neckline_and_its_chest() {
         assert!(off < 1e-12, "{}: {off}", boundary.name());
         assert!(farthest(&vest, boundary) < 4e-4, "{}: {}", boundary.name(), farthest(&vest, boundary));
     }
-    let chest = &curves(&saved, &evaluation, "even chest", "curves")[0];
+    let chest = &saved.curves(&evaluation, "even chest", "curves")[0];
     assert!(farthest(&vest, chest) < 8e-4, "chest: {}", farthest(&vest, chest));
-    let chest_section = sections(&saved, &evaluation, "shaped").section(28);
+    let chest_section = saved.sections(&evaluation, "shaped", "sections").section(28);
     let off = chest_section.iter().map(|p| closest(chest, *p).distance).fold(0.0, f64::max);
     assert!(off < 1e-12, "the section is on the contour: {off}");
 
@@ -226,13 +209,13 @@ fn the_vest_passes_through_its_five_rails_its_hem_its_neckline_and_its_chest() {
     let (body, surface) = (saved.node("body"), saved.node("surface"));
     saved.graph.connect(&saved.catalogue, body, "sections", surface, "sections").unwrap();
     let evaluation = saved.evaluate(&mut evaluator, &["surface", "body"]);
-    let plain = mesh(&saved, &evaluation, "surface");
+    let plain = saved.mesh(&evaluation, "surface", "mesh");
     assert_fair("vest without its chest", plain, false, 25.0);
     for rail in &rails {
         // They were drawn to within 0.2 mm of hem and neckline, and are bent to meet them.
         assert!(farthest(plain, rail) < 4e-4, "{}: {}", rail.name(), farthest(plain, rail));
     }
-    let stack = sections(&saved, &evaluation, "body");
+    let stack = saved.sections(&evaluation, "body", "sections");
     assert_eq!(stack.rails().len(), 5);
     assert!(ripple(stack).sign_changes <= 4, "{:?}", ripple(stack));
 }
@@ -269,10 +252,10 @@ impl TwoViews {
         targets.extend(["sections", "surface", "sorted", "front view", "side view"]);
         let mut evaluator = Evaluator::default();
         let evaluation = saved.evaluate(&mut evaluator, &targets);
-        let whole = mesh(&saved, &evaluation, "surface").clone();
-        let sections = sections(&saved, &evaluation, "sections").clone();
+        let whole = saved.mesh(&evaluation, "surface", "mesh").clone();
+        let sections = saved.sections(&evaluation, "sections", "sections").clone();
         assert_fair(name, &whole, self.closed, 180.0);
-        let rails = curves(&saved, &evaluation, "sorted", "rails");
+        let rails = saved.curves(&evaluation, "sorted", "rails");
         let names: Vec<_> = rails.iter().map(Curve::name).collect();
         assert_eq!(names, ["back", "right", "front", "left"], "{name}: counter-clockwise from the seam at the back");
 
@@ -284,7 +267,7 @@ impl TwoViews {
             ("side view", [("front", 2), ("back", 0)], side),
         ] {
             for (contour, rail) in rail_of {
-                let drawn = curves(&saved, &evaluation, view, "curves").iter().find(|c| c.name() == contour).unwrap();
+                let drawn = saved.curves(&evaluation, view, "curves").iter().find(|c| c.name() == contour).unwrap();
                 let off = off_drawing(&sections, rail, drawn, flat);
                 assert!(off < self.drawn, "{name}, contour {contour}: {off} m from the drawing");
             }
@@ -296,7 +279,7 @@ impl TwoViews {
             saved.graph.reset(surface, cap).unwrap();
         }
         let evaluation = saved.evaluate(&mut evaluator, &["surface"]);
-        let bare = mesh(&saved, &evaluation, "surface");
+        let bare = saved.mesh(&evaluation, "surface", "mesh");
         let (anywhere, outside_mouth) = folds(bare, |p| (1.47..1.51).contains(&p.y) && p.z > 0.10);
         assert!(anywhere < self.folds[0], "{name}: folds by {anywhere} degrees");
         assert!(outside_mouth < self.folds[1], "{name}: folds by {outside_mouth} degrees outside the mouth");
@@ -330,7 +313,7 @@ fn the_head_is_closed_smooth_and_within_its_silhouettes() {
     let (head, sections) = head.assert();
     assert_eq!(sections.len(), 96);
     assert!(sections.is_pole(95), "the crown is one point");
-    let (low, high) = bounds(&head);
+    let (low, high) = measure::bounds(&head).unwrap();
     assert!((high.y - 1.658252).abs() < 2e-4 && (low.y - 1.438459).abs() < 1e-3, "{low} {high}");
     assert!((low.x + high.x).abs() < 1e-3, "left and right are alike: {low} {high}");
 }
@@ -347,7 +330,7 @@ fn the_neck_is_open_smooth_and_within_its_silhouettes() {
 fn the_leg_is_closed_smooth_and_within_its_silhouettes() {
     let leg = TwoViews { name: "leg", closed: true, drawn: 2e-3, bulge: 2e-3, folds: [15.0, 15.0] };
     let (leg, sections) = leg.assert();
-    let (low, high) = bounds(&leg);
+    let (low, high) = measure::bounds(&leg).unwrap();
     assert!(low.y > 0.1 && high.y < 0.8 && high.y - low.y > 0.68, "{low} {high}");
     assert!(ripple(&sections).sign_changes <= 8, "{:?}", ripple(&sections));
 }
@@ -357,11 +340,12 @@ fn the_legs_are_the_leg_twice_as_mirror_images() {
     let saved = Saved::load("legs");
     let mut evaluator = Evaluator::default();
     let evaluation = saved.evaluate(&mut evaluator, &["left", "right", "contours"]);
-    let (left, right) = (mesh(&saved, &evaluation, "left"), mesh(&saved, &evaluation, "right"));
+    let (left, right) = (saved.mesh(&evaluation, "left", "mesh"), saved.mesh(&evaluation, "right", "mesh"));
     for (name, mesh) in [("left", left), ("right", right)] {
         assert_fair(name, mesh, true, 180.0);
     }
-    let ((low, high), (mirrored_low, mirrored_high)) = (bounds(left), bounds(right));
+    let ((low, high), (mirrored_low, mirrored_high)) =
+        (measure::bounds(left).unwrap(), measure::bounds(right).unwrap());
     let mirror = DVec3::new(-1.0, 1.0, 1.0);
     assert!(low.x > 0.0 && mirrored_high.x < 0.0, "{low} {mirrored_high}");
     // The rings of the two begin at the same seam and run the same way around, so that points differ a little.
@@ -372,6 +356,6 @@ fn the_legs_are_the_leg_twice_as_mirror_images() {
     let one = Saved::load("leg");
     let evaluation_of_one = one.evaluate(&mut evaluator, &["even contours", "surface"]);
     let all = curves(&one, &evaluation_of_one, "even contours", "curves");
-    assert_eq!(curves(&saved, &evaluation, "contours", "contours"), all);
+    assert_eq!(saved.curves(&evaluation, "contours", "contours"), all);
     assert_eq!(mesh(&one, &evaluation_of_one, "surface"), left);
 }

@@ -17,17 +17,6 @@ use maquette_geometry::scene::{Material, MeshItem, Scene};
 use maquette_graph::{Evaluation, Evaluator, EventLog, Literal, OutcomeState};
 use maquette_nodes::wire;
 
-fn figure(saved: &Saved, evaluation: &Evaluation, node: &str, name: &str) -> f64 {
-    match &evaluation.outcome(saved.node(node)).unwrap().state {
-        OutcomeState::Done { report, .. } => report.figure(name).unwrap_or_else(|| panic!("{node}.{name}")).value,
-        other => panic!("{node}: {other:?}"),
-    }
-}
-
-fn mesh<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str, output: &str) -> &'a Mesh {
-    &evaluation.value::<wire::Mesh>(saved.node(node), output).unwrap().0
-}
-
 /// Places of the vertices of a selection, before and after.
 fn places(saved: &Saved, evaluation: &Evaluation, selection: &str, before: &Mesh, after: &Mesh) -> Vec<(DVec3, DVec3)> {
     let chosen = evaluation.value::<wire::Selection>(saved.node(selection), "selection").unwrap();
@@ -47,7 +36,7 @@ fn a_bar_bent_by_120_degrees_keeps_volume_and_edges() {
     let saved = Saved::load("bar-bent");
     let all = ["bar bent", "bar while dragging", "figures", "figures while dragging", "bent", "bar", "bound"];
     let evaluation = saved.evaluate(&mut Evaluator::default(), &all);
-    let of = |node: &str, name: &str| figure(&saved, &evaluation, node, name);
+    let of = |node: &str, name: &str| saved.figure(&evaluation, node, name);
     assert!(of("figures", "volume-ratio") >= 0.90, "{}", of("figures", "volume-ratio"));
     assert!(of("figures", "rms-edge-error") <= 0.105, "{}", of("figures", "rms-edge-error"));
     // Without the second system the bar shears and thins.
@@ -55,7 +44,7 @@ fn a_bar_bent_by_120_degrees_keeps_volume_and_edges() {
     assert!(of("figures while dragging", "rms-edge-error") > 1.5 * of("figures", "rms-edge-error"));
     assert_eq!((of("bound", "free"), of("bound", "handles")), (2928.0, 2.0));
     // The upper end looks where an arc of 120 degrees leads.
-    let (bar, bent) = (mesh(&saved, &evaluation, "bar", "mesh"), mesh(&saved, &evaluation, "bent", "mesh"));
+    let (bar, bent) = (saved.mesh(&evaluation, "bar", "mesh"), saved.mesh(&evaluation, "bent", "mesh"));
     let top = bar.positions().iter().zip(bent.positions()).filter(|(p, _)| p.y > 0.599);
     let mean = top.clone().map(|(_, q)| *q).sum::<DVec3>() / top.count() as f64;
     let radius = 0.5 / 120.0_f64.to_radians();
@@ -68,7 +57,7 @@ fn a_bar_bent_by_120_degrees_keeps_volume_and_edges() {
 fn a_bar_twisted_by_400_degrees_winds() {
     let saved = Saved::load("bar-twisted");
     let evaluation = saved.evaluate(&mut Evaluator::default(), &["bar twisted", "twisted", "figures", "long bar"]);
-    let (bar, twisted) = (mesh(&saved, &evaluation, "long bar", "mesh"), mesh(&saved, &evaluation, "twisted", "mesh"));
+    let (bar, twisted) = (saved.mesh(&evaluation, "long bar", "mesh"), saved.mesh(&evaluation, "twisted", "mesh"));
     // The angle around the axis, followed from level to level along one edge of the bar.
     let (mut angle, mut last) = (0.0, DVec3::ZERO);
     for level in 0..=72 {
@@ -79,8 +68,8 @@ fn a_bar_twisted_by_400_degrees_winds() {
         last = now;
     }
     assert!((angle.to_degrees() - 400.0).abs() < 1e-6, "{}", angle.to_degrees());
-    let volume = figure(&saved, &evaluation, "figures", "volume-ratio");
-    let edges = figure(&saved, &evaluation, "figures", "rms-edge-error");
+    let volume = saved.figure(&evaluation, "figures", "volume-ratio");
+    let edges = saved.figure(&evaluation, "figures", "rms-edge-error");
     assert!(volume > 0.55 && edges < 0.085, "{volume}, {edges}");
 }
 
@@ -92,7 +81,7 @@ fn four_fingers_bend_and_the_palm_stays() {
     let mut all = vec!["hand bent", "hand at rest", "figures", "bent", "hand", "fingers", "bound"];
     all.extend(tips.iter().map(String::as_str));
     let evaluation = saved.evaluate(&mut Evaluator::default(), &all);
-    let (hand, bent) = (mesh(&saved, &evaluation, "hand", "selected"), mesh(&saved, &evaluation, "bent", "mesh"));
+    let (hand, bent) = (saved.mesh(&evaluation, "hand", "selected"), saved.mesh(&evaluation, "bent", "mesh"));
     assert_eq!(Topology::new(hand).boundary_loops().len(), 1, "cut at the wrist");
     let axis = DVec3::new(0.39, -0.41, -0.82);
     let pivots = [
@@ -109,8 +98,8 @@ fn four_fingers_bend_and_the_palm_stays() {
     let chosen: Vec<bool> = (0..hand.positions().len()).map(|v| region.weights.contains(v)).collect();
     let rest = hand.positions().iter().zip(bent.positions()).zip(&chosen).filter(|(_, chosen)| !**chosen);
     assert!(rest.clone().count() > 300 && rest.clone().all(|((p, q), _)| p == q), "the palm stays");
-    let volume = figure(&saved, &evaluation, "figures", "volume-ratio");
-    let edges = figure(&saved, &evaluation, "figures", "rms-edge-error");
+    let volume = saved.figure(&evaluation, "figures", "volume-ratio");
+    let edges = saved.figure(&evaluation, "figures", "rms-edge-error");
     assert!((volume - 1.0).abs() < 0.03 && edges < 0.06, "{volume}, {edges}");
 }
 
@@ -120,7 +109,7 @@ fn fingers_curl_into_a_fist() {
     let tips = ["index tip", "middle tip", "ring tip", "little tip"];
     let all = [&["fist", "hand at rest", "figures", "bent", "hand"], &tips[..]].concat();
     let evaluation = saved.evaluate(&mut Evaluator::default(), &all);
-    let (hand, bent) = (mesh(&saved, &evaluation, "hand", "selected"), mesh(&saved, &evaluation, "bent", "mesh"));
+    let (hand, bent) = (saved.mesh(&evaluation, "hand", "selected"), saved.mesh(&evaluation, "bent", "mesh"));
     let palm = DVec3::new(0.49, 0.945, 0.262);
     for tip in &tips[1..] {
         let moved = places(&saved, &evaluation, tip, hand, bent);
@@ -131,8 +120,8 @@ fn fingers_curl_into_a_fist() {
         let apart = |m: &(DVec3, DVec3), n: &(DVec3, DVec3)| m.0.distance(n.0) - m.1.distance(n.1);
         assert!(moved.windows(2).all(|pair| apart(&pair[0], &pair[1]).abs() < 1e-12), "{tip}");
     }
-    let volume = figure(&saved, &evaluation, "figures", "volume-ratio");
-    let edges = figure(&saved, &evaluation, "figures", "rms-edge-error");
+    let volume = saved.figure(&evaluation, "figures", "volume-ratio");
+    let edges = saved.figure(&evaluation, "figures", "rms-edge-error");
     assert!((volume - 1.0).abs() < 0.11 && edges < 0.12, "{volume}, {edges}");
 }
 
@@ -141,7 +130,7 @@ fn a_body_raises_an_arm_bends_a_knee_and_turns_its_head() {
     let saved = Saved::load("body-posed");
     let all = ["moved", "still", "figures", "posed", "body", "lower arm and hand", "calf and foot", "head", "bound"];
     let evaluation = saved.evaluate(&mut Evaluator::default(), &all);
-    let (body, posed) = (mesh(&saved, &evaluation, "body", "mesh"), mesh(&saved, &evaluation, "posed", "mesh"));
+    let (body, posed) = (saved.mesh(&evaluation, "body", "mesh"), saved.mesh(&evaluation, "posed", "mesh"));
     for (part, pivot, axis, degrees) in [
         ("lower arm and hand", DVec3::new(0.17, 1.32, 0.02), DVec3::Z, 75.0),
         ("calf and foot", DVec3::new(0.142, 0.475, 0.037), DVec3::X, 60.0),
@@ -157,26 +146,17 @@ fn a_body_raises_an_arm_bends_a_knee_and_turns_its_head() {
     assert!(right.clone().count() > 1000 && right.clone().all(|(p, q)| p == q));
     assert_eq!(posed.corners(), body.corners());
     assert!(measure::signed_volume(posed) > 0.0);
-    let volume = figure(&saved, &evaluation, "figures", "volume-ratio");
-    let edges = figure(&saved, &evaluation, "figures", "rms-edge-error");
+    let volume = saved.figure(&evaluation, "figures", "volume-ratio");
+    let edges = saved.figure(&evaluation, "figures", "rms-edge-error");
     assert!((volume - 1.0).abs() < 0.01 && edges < 0.045, "{volume}, {edges}");
 }
 
 #[test]
 fn the_spout_of_a_teapot_bends_and_collapses_where_detail_is_not_turned() {
-    let saved = Saved::load("teapot");
-    let all = [
-        "spout bent",
-        "without turning",
-        "figures",
-        "figures without turning",
-        "bent",
-        "teapot",
-        "mouth",
-        "what bends",
-    ];
+    let mut saved = Saved::load("teapot");
+    let all = ["spout bent", "teapot at rest", "figures", "bent", "teapot", "mouth", "what bends"];
     let evaluation = saved.evaluate(&mut Evaluator::default(), &all);
-    let (teapot, bent) = (mesh(&saved, &evaluation, "teapot", "mesh"), mesh(&saved, &evaluation, "bent", "mesh"));
+    let (teapot, bent) = (saved.mesh(&evaluation, "teapot", "mesh"), saved.mesh(&evaluation, "bent", "mesh"));
     let (pivot, shift) = (DVec3::new(0.125, 0.085, 0.0), DVec3::new(0.02, -0.045, 0.0));
     let moved = places(&saved, &evaluation, "mouth", teapot, bent);
     let moved: Vec<(DVec3, DVec3)> = moved.into_iter().map(|(p, q)| (p, q - shift)).collect();
@@ -184,7 +164,7 @@ fn the_spout_of_a_teapot_bends_and_collapses_where_detail_is_not_turned() {
     let region = evaluation.value::<wire::Selection>(saved.node("what bends"), "selection").unwrap();
     let still = (0..teapot.positions().len()).filter(|v| !region.weights.contains(*v));
     assert!(still.clone().count() > 2800 && still.clone().all(|v| teapot.positions()[v] == bent.positions()[v]));
-    let lost = |evaluation: &Evaluation, saved: &Saved| 1.0 - figure(saved, evaluation, "figures", "volume-ratio");
+    let lost = |evaluation: &Evaluation, saved: &Saved| 1.0 - saved.figure(evaluation, "figures", "volume-ratio");
     let turned = lost(&evaluation, &saved);
     saved.graph.set(saved.node("bent"), "quality", Literal::Choice("unturned".into())).unwrap();
     let plain = lost(&saved.evaluate(&mut Evaluator::default(), &["figures"]), &saved);
@@ -197,7 +177,7 @@ fn an_imported_mesh_goes_back_where_it_came_from() {
     let source = std::fs::read_to_string("graphs/data/meshes/teapot.obj").unwrap();
     let saved = Saved::load("teapot");
     let evaluation = saved.evaluate(&mut Evaluator::default(), &["bent", "spout bent", "teapot at rest"]);
-    let bent = mesh(&saved, &evaluation, "bent", "mesh");
+    let bent = saved.mesh(&evaluation, "bent", "mesh");
     let name = bent.name().to_owned();
     let item = MeshItem { name, mesh: bent.clone(), material: Material::default() };
     let written = obj::write(&Scene { meshes: vec![item], curves: vec![] }, None).unwrap();
@@ -224,35 +204,26 @@ fn a_posed_body_converges_to_what_the_reference_reaches() {
         saved.graph.set(saved.node(node), input, value).unwrap();
     }
     let evaluation = saved.evaluate(&mut Evaluator::default(), &["moved", "still", "figures", "posed"]);
-    let edges = figure(&saved, &evaluation, "figures", "rms-edge-error");
+    let edges = saved.figure(&evaluation, "figures", "rms-edge-error");
     // libigl 2.6, `arap` with spokes from this very result, the same vertices held: 0.0314.
     assert!(edges <= 0.0316, "{edges}");
-}
-
-fn ran(saved: &Saved, evaluator: &mut Evaluator) -> Vec<String> {
-    let log = EventLog::default();
-    let request = Saved::request(&saved.graph.results()).events(&log);
-    assert!(evaluator.evaluate(&saved.catalogue, &saved.graph, &request).is_complete());
-    let mut names = log.take_ran();
-    names.sort();
-    names
 }
 
 #[test]
 fn dragging_a_handle_only_solves() {
     let mut saved = Saved::load("body-posed");
     let mut evaluator = Evaluator::default();
-    assert_eq!(ran(&saved, &mut evaluator).len(), saved.graph.nodes().len());
+    assert_eq!(saved.ran(&mut evaluator).len(), saved.graph.nodes().len());
     let head = saved.node("head turned");
     saved.graph.set(head, "angle", Literal::Number(-20.0)).unwrap();
-    assert_eq!(ran(&saved, &mut evaluator), ["figures", "head turned", "moved", "parts", "posed", "still"]);
+    assert_eq!(saved.ran(&mut evaluator), ["figures", "head turned", "moved", "parts", "posed", "still"]);
     // An arm goes through the handles behind it, which are the same ones for the binding.
     let arm = saved.node("arm raised");
     saved.graph.set(arm, "angle", Literal::Number(30.0)).unwrap();
     let behind = ["arm raised", "figures", "head turned", "knee bent", "moved", "parts", "posed", "still"];
-    assert_eq!(ran(&saved, &mut evaluator), behind);
+    assert_eq!(saved.ran(&mut evaluator), behind);
     // Another vertex in a handle binds again.
     let calf = saved.node("calf and foot");
     saved.graph.set(calf, "size", Literal::Vector([0.27, 0.5, 0.5])).unwrap();
-    assert!(ran(&saved, &mut evaluator).contains(&"bound".to_owned()));
+    assert!(saved.ran(&mut evaluator).contains(&"bound".to_owned()));
 }

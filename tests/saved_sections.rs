@@ -14,17 +14,6 @@ use maquette_geometry::mesh::{Mesh, MeshDistance, check};
 use maquette_graph::{Evaluation, Evaluator, OutcomeState, Report};
 use maquette_nodes::wire;
 
-fn report<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str) -> &'a Report {
-    match &evaluation.outcome(saved.node(node)).unwrap().state {
-        OutcomeState::Done { report, .. } => report,
-        other => panic!("{node}: {other:?}"),
-    }
-}
-
-fn figure(saved: &Saved, evaluation: &Evaluation, node: &str, name: &str) -> f64 {
-    report(saved, evaluation, node).figure(name).unwrap_or_else(|| panic!("{node}.{name}")).value
-}
-
 fn sections<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str) -> &'a [wire::NamedSection] {
     &evaluation.value::<wire::EllipticSections>(saved.node(node), "sections").unwrap().0
 }
@@ -41,19 +30,19 @@ fn sound<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str, closed: bool
 fn the_forearm_is_eight_generalized_ellipses() {
     let saved = Saved::load("forearm");
     let evaluation = saved.evaluate(&mut Evaluator::default(), &["forearm", "skin", "fit", "fitted", "surface"]);
-    let of = |name: &str| figure(&saved, &evaluation, "fitted", name);
+    let of = |name: &str| saved.figure(&evaluation, "fitted", name);
     assert_eq!(sections(&saved, &evaluation, "fitted").len(), 8);
     // The tolerances of the thesis (3.13), and fewer harmonics than it says limbs need.
     assert!(of("mean") <= 0.01 && of("max") <= 0.025 && of("mean-harmonics") <= 4.0);
     assert!(of("largest-distance") < 2e-3 && of("constants") < 200.0);
     // By nearest points, both ways, no section is farther than at equal angles.
-    let nearest = |name: &str| figure(&saved, &evaluation, "fit", name);
+    let nearest = |name: &str| saved.figure(&evaluation, "fit", name);
     assert!(nearest("max") <= of("max") && nearest("met") == 1.0 && nearest("largest-distance") > 5e-4);
     assert_eq!(nearest("harmonics"), of("most-harmonics"));
     let skin = sound(&saved, &evaluation, "skin", true);
-    assert!(figure(&saved, &evaluation, "skin", "deviation") <= 2e-4);
+    assert!(saved.figure(&evaluation, "skin", "deviation") <= 2e-4);
     // A mesh of the same accuracy has ten times as many numbers.
-    let numbers = figure(&saved, &evaluation, "surface", "constants");
+    let numbers = saved.figure(&evaluation, "surface", "constants");
     assert!(3.0 * skin.positions().len() as f64 > 10.0 * numbers, "{numbers}");
 }
 
@@ -65,12 +54,12 @@ fn the_leg_is_cut_from_its_template_along_the_bones() {
     let template = &evaluation.value::<wire::Mesh>(saved.node("template"), "mesh").unwrap().0;
     let distance = MeshDistance::new(template).unwrap();
     let cut = &evaluation.value::<wire::Curves>(saved.node("cut"), "curves").unwrap().0;
-    assert_eq!((cut.len(), figure(&saved, &evaluation, "cut", "missed")), (12, 0.0));
-    assert!(figure(&saved, &evaluation, "cut", "largest-offset") < 0.03);
+    assert_eq!((cut.len(), saved.figure(&evaluation, "cut", "missed")), (12, 0.0));
+    assert!(saved.figure(&evaluation, "cut", "largest-offset") < 0.03);
     for curve in cut {
         assert!(curve.points().iter().all(|p| distance.nearest(*p).distance < 1e-6), "{}", curve.name());
     }
-    let of = |name: &str| figure(&saved, &evaluation, "fitted", name);
+    let of = |name: &str| saved.figure(&evaluation, "fitted", name);
     // Within 1 mm, as the graph asks for, which needs more harmonics than 1 % of the size.
     assert!(of("largest-distance") <= 1e-3 && of("mean-harmonics") <= 6.0 && of("most-harmonics") <= 10.0);
     // The lids apart, the surface is that of the template: a loft by straight lines is within 2 mm at 95 %.
@@ -90,7 +79,7 @@ fn the_leg_is_cut_from_its_template_along_the_bones() {
 fn the_hip_in_segments_is_within_4_mm_and_keeps_its_corner() {
     let saved = Saved::load("hip");
     let evaluation = saved.evaluate(&mut Evaluator::default(), &["hip", "skin", "fitted"]);
-    let of = |name: &str| figure(&saved, &evaluation, "fitted", name);
+    let of = |name: &str| saved.figure(&evaluation, "fitted", name);
     assert!(of("largest-distance") <= 4e-3 && of("most-harmonics") <= 8.0);
     let stack = sections(&saved, &evaluation, "fitted");
     assert!(stack.iter().all(|named| named.section.segments().len() == 2));
@@ -109,11 +98,11 @@ fn open_strokes_are_fitted_and_a_surface_goes_through_them() {
         saved.evaluate(&mut Evaluator::default(), &["relief", "skin", "fitted lines", "fitted", "surface"]);
     let stack = sections(&saved, &evaluation, "fitted");
     assert_eq!(stack.iter().map(|named| named.section.is_closed()).collect::<Vec<_>>(), [false; 5]);
-    assert!(figure(&saved, &evaluation, "fitted", "max") <= 0.01);
+    assert!(saved.figure(&evaluation, "fitted", "max") <= 0.01);
     // The strokes with features need more harmonics than those beside them.
     let harmonics: Vec<usize> = stack.iter().map(|named| named.section.harmonics()).collect();
     assert!(harmonics[2] > harmonics[0] && harmonics[2] > harmonics[4], "{harmonics:?}");
-    assert_eq!(report(&saved, &evaluation, "fitted").notes, ["angles by arc length"]);
+    assert_eq!(saved.report(&evaluation, "fitted").notes, ["angles by arc length"]);
     sound(&saved, &evaluation, "skin", false);
     let surface = evaluation.value::<wire::Surface>(saved.node("surface"), "surface").unwrap();
     let [part] = surface.series().unwrap() else { panic!("{surface:?}") };
@@ -129,7 +118,7 @@ fn the_human_stands_on_65_sections() {
     let saved = Saved::load("human");
     let mut evaluator = Evaluator::default();
     let evaluation = saved.evaluate(&mut evaluator, &["human", "trunk", "joints", "body", "both sides"]);
-    let of = |node: &str, name: &str| figure(&saved, &evaluation, node, name);
+    let of = |node: &str, name: &str| saved.figure(&evaluation, node, name);
     // The tolerances of the thesis, and its bound of 15 harmonics; hips and torso within 4 mm at the worst point.
     for (node, mean, most) in
         [("trunk", "mean", "max"), ("left arm", "fitted/mean", "fitted/max"), ("left leg", "fitted/mean", "fitted/max")]
@@ -140,15 +129,15 @@ fn the_human_stands_on_65_sections() {
     assert!(of("left arm", "fitted/mean-harmonics") <= 4.0 && of("left leg", "fitted/mean-harmonics") <= 4.0);
     assert_eq!(sections(&saved, &evaluation, "trunk").len(), 34);
     // Parts that share a section meet without a crease, and the patches of the hips keep only the corner at the back.
-    assert!(report(&saved, &evaluation, "joints").figures.is_empty(), "measured on request only");
+    assert!(saved.report(&evaluation, "joints").figures.is_empty(), "measured on request only");
     let [human, joints] = ["human", "joints"].map(|name| saved.node(name));
     let request = Saved::request(&[human]).examine_only(&[joints]);
     let examined = evaluator.evaluate(&saved.catalogue, &saved.graph, &request);
-    let of_joints = |name: &str| figure(&saved, &examined, "joints", name);
+    let of_joints = |name: &str| saved.figure(&examined, "joints", name);
     assert!(of_joints("largest-gap") < 1e-9 && of_joints("largest-part-angle") < 0.01);
     // Three seams between four parts, and the patches of each.
-    let rows = &report(&saved, &examined, "joints").table("joints").unwrap().rows;
-    assert!(rows.len() > 3 && report(&saved, &examined, "human").figures.is_empty(), "{rows:?}");
+    let rows = &saved.report(&examined, "joints").table("joints").unwrap().rows;
+    assert!(rows.len() > 3 && saved.report(&examined, "human").figures.is_empty(), "{rows:?}");
     // Per vertex of the mesh it replaces the body has far fewer constants than the thesis's 7,530 for 12,426.
     let constants =
         of("trunk", "constants") + 2.0 * (of("left arm", "fitted/constants") + of("left leg", "fitted/constants"));

@@ -16,10 +16,6 @@ use maquette_nodes::wire;
 
 const GROUPS: [&str; 10] = ["head", "body", "hands", "boots", "kilt", "vest", "belt", "pauldrons", "helmet", "bracers"];
 
-fn mesh<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str, output: &str) -> &'a Mesh {
-    &evaluation.value::<wire::Mesh>(saved.node(node), output).unwrap().0
-}
-
 fn mirrored(mesh: &Mesh) -> f64 {
     let distance = MeshDistance::new(mesh).unwrap();
     let off = |p: &DVec3| distance.nearest(*p * DVec3::new(-1.0, 1.0, 1.0)).distance;
@@ -31,7 +27,7 @@ fn the_warriors_body_is_one_smooth_shell_from_head_to_toe() {
     let saved = Saved::load("warrior");
     let mut evaluator = Evaluator::default();
     let evaluation = saved.evaluate(&mut evaluator, &["skin", "body", "head"]);
-    let body = mesh(&saved, &evaluation, "body", "mesh");
+    let body = saved.mesh(&evaluation, "body", "mesh");
     let found = check(body);
     // Between the lids and the lips one looks at eyeballs and teeth; all else is welded.
     assert!(found.is_sound(), "{found}");
@@ -41,8 +37,7 @@ fn the_warriors_body_is_one_smooth_shell_from_head_to_toe() {
     // What is seen of an angle is where a hole lies in a tight bend: at the root of the nose, and the hips' between the legs.
     let welds = [("body", "joined", 10.0, 1.5), ("head", "face with nose", 2.0, 0.6), ("head", "joined", 6.0, 0.5)];
     for (group, weld, seams, degrees) in welds {
-        let OutcomeState::Done { report, .. } = &evaluation.outcome(saved.node(group)).unwrap().state else { panic!() };
-        let of = |name: &str| report.figure(&format!("{weld}/{name}")).unwrap().value;
+        let of = |name: &str| saved.figure(&evaluation, group, &format!("{weld}/{name}"));
         assert_eq!((of("seams"), of("largest-gap"), of("t-junctions")), (seams, 0.0, 0.0), "{group}/{weld}");
         assert!(of("largest-angle") < degrees, "{group}/{weld}: {} degrees", of("largest-angle"));
     }
@@ -76,7 +71,7 @@ fn everything_the_warrior_wears_is_sound_and_mirrored() {
         ("head", "lips", 1, 2),
     ];
     for (node, output, shells, loops) in parts {
-        let part = mesh(&saved, &evaluation, node, output);
+        let part = saved.mesh(&evaluation, node, output);
         let found = check(part);
         assert!(found.is_sound(), "{node}.{output}: {found}");
         assert_eq!((found.shells, found.boundary_loops), (shells, loops), "{node}.{output}: {found}");
@@ -84,8 +79,8 @@ fn everything_the_warrior_wears_is_sound_and_mirrored() {
     }
     assert_eq!(parts.len() + 1, results);
     // The vest lies outside of the body where it is worn, but at the shoulders, which the arms leave through it.
-    let body = MeshDistance::new(mesh(&saved, &evaluation, "body", "mesh")).unwrap();
-    for p in mesh(&saved, &evaluation, "vest", "mesh").positions().iter().filter(|p| p.y < 1.3) {
+    let body = MeshDistance::new(saved.mesh(&evaluation, "body", "mesh")).unwrap();
+    for p in saved.mesh(&evaluation, "vest", "mesh").positions().iter().filter(|p| p.y < 1.3) {
         let nearest = body.nearest(*p);
         let flat = DVec3::new(1.0, 0.0, 1.0);
         assert!((*p * flat).length() > (nearest.point * flat).length(), "the vest is in the body at {p}");
@@ -120,7 +115,7 @@ fn a_stroke_drawn_anew_runs_only_what_follows_from_it() {
     ran.sort();
     assert_eq!(ran, ["vest", "vest plate", "vest/chest", "vest/contours", "vest/shaped", "vest/surface"]);
     let widest = |evaluation| {
-        let near = mesh(&saved, evaluation, "vest", "mesh").positions().iter().filter(|p| (p.y - 1.335).abs() < 0.01);
+        let near = saved.mesh(evaluation, "vest", "mesh").positions().iter().filter(|p| (p.y - 1.335).abs() < 0.01);
         near.map(|p| p.x).fold(0.0, f64::max)
     };
     assert!((widest(&after) / widest(&before) - 1.05).abs() < 2e-3, "{} of {}", widest(&after), widest(&before));
@@ -132,7 +127,7 @@ fn the_warriors_parameters_do_what_they_say() {
     let mut evaluator = Evaluator::default();
     let top = |saved: &Saved, evaluator: &mut Evaluator| {
         let evaluation = saved.evaluate(evaluator, &["helmet"]);
-        mesh(saved, &evaluation, "helmet", "plume").positions().iter().map(|p| p.y).fold(0.0, f64::max)
+        saved.mesh(&evaluation, "helmet", "plume").positions().iter().map(|p| p.y).fold(0.0, f64::max)
     };
     let low = top(&saved, &mut evaluator);
     saved.graph.set_parameter("plume", Literal::Vector([1.0, 2.0, 1.0])).unwrap();
@@ -141,7 +136,7 @@ fn the_warriors_parameters_do_what_they_say() {
     assert!(((high - 1.86) / (low - 1.86) - 2.0).abs() < 1e-9, "{low} to {high}");
     let wide = |saved: &Saved, evaluator: &mut Evaluator| {
         let evaluation = saved.evaluate(evaluator, &["head"]);
-        mesh(saved, &evaluation, "head", "lips").positions().iter().map(|p| p.x).fold(0.0, f64::max)
+        saved.mesh(&evaluation, "head", "lips").positions().iter().map(|p| p.x).fold(0.0, f64::max)
     };
     let narrow = wide(&saved, &mut evaluator);
     saved.graph.set_parameter("mouth", Literal::Vector([1.1, 1.0, 1.0])).unwrap();

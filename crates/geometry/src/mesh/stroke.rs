@@ -168,7 +168,7 @@ pub fn cut_along(
 }
 
 /// A stroke as it is seen along a direction, and what lies under it.
-struct Under {
+pub(super) struct Under {
     outline: Vec<DVec2>,
     low: DVec2,
     high: DVec2,
@@ -176,7 +176,7 @@ struct Under {
 }
 
 impl Under {
-    fn new(stroke: &Curve, direction: DVec3) -> Self {
+    pub(super) fn new(stroke: &Curve, direction: DVec3) -> Self {
         let axes: [DVec3; 2] = direction.any_orthonormal_pair().into();
         let outline: Vec<DVec2> = stroke.points().iter().map(|p| flat(axes, *p)).collect();
         let (low, high) =
@@ -185,13 +185,13 @@ impl Under {
     }
 
     /// Even-odd rule.
-    fn encloses(&self, point: DVec3) -> bool {
+    pub(super) fn encloses(&self, point: DVec3) -> bool {
         let p = flat(self.axes, point);
         p.cmpge(self.low).all() && p.cmple(self.high).all() && encloses(&self.outline, p)
     }
 
     /// The part of a mesh that rays through the stroke and what it encloses can meet; `None` where there is none.
-    fn rays(&self, mesh: &Mesh) -> Result<Option<MeshRays>, NoPolygons> {
+    pub(super) fn rays(&self, mesh: &Mesh) -> Result<Option<MeshRays>, NoPolygons> {
         if mesh.polygon_count() == 0 {
             return Err(NoPolygons);
         }
@@ -220,6 +220,13 @@ pub(super) fn behind(mesh: &Mesh, stroke: &Curve) -> f64 {
     2.0 * (low.min(from).distance(high.max(to)) + f64::MIN_POSITIVE)
 }
 
+/// Whether no polygon lies between a point of a mesh and the eye, `reach` before it.
+pub(super) fn is_seen(rays: &MeshRays, point: DVec3, direction: DVec3, reach: f64) -> bool {
+    // What hides it lies farther before it than rounding puts its own polygons.
+    let tolerance = 1e-6 * reach;
+    rays.first(point - reach * direction, direction).is_none_or(|hit| hit.along > reach - tolerance)
+}
+
 /// Of the pieces inside, leaves the one of which most vertices are seen.
 fn seen_only(mesh: &Mesh, rays: &MeshRays, direction: DVec3, reach: f64, inside: &mut [bool]) {
     // Pieces by union of the vertices of each polygon that are inside.
@@ -239,13 +246,10 @@ fn seen_only(mesh: &Mesh, rays: &MeshRays, direction: DVec3, reach: f64, inside:
             parent[a.max(b) as usize] = a.min(b);
         }
     }
-    let tolerance = 1e-6 * reach;
     let mut seen: BTreeMap<u32, usize> = BTreeMap::new();
     for (vertex, _) in inside.iter().enumerate().filter(|(_, inside)| **inside) {
         let piece = root(&mut parent, u32::try_from(vertex).unwrap_or(u32::MAX));
-        let at = mesh.positions()[vertex];
-        let first = rays.first(at - reach * direction, direction);
-        let visible = first.is_none_or(|hit| hit.along > reach - tolerance);
+        let visible = is_seen(rays, mesh.positions()[vertex], direction, reach);
         *seen.entry(piece).or_default() += usize::from(visible);
     }
     let best = seen.iter().max_by_key(|(piece, count)| (**count, std::cmp::Reverse(**piece))).map(|(piece, _)| *piece);

@@ -7,7 +7,7 @@
 
 use super::least_squares::{constrained, design};
 use super::options::{Continuity, LocalAngles};
-use super::section::EllipticSegment;
+use super::section::{EllipticSection, EllipticSegment};
 use super::series::{Series, SeriesError, basis};
 use glam::DVec3;
 use nalgebra::DMatrix;
@@ -96,7 +96,8 @@ impl Layout {
         condition(if local { PI } else { self.span(segment) }, harmonics)
     }
 
-    /// The samples of each segment, as index and angle within its range. Samples on a joint belong to both segments.
+    /// The samples of each segment, as index and angle within its range. Samples on a joint belong to both segments, at
+    /// the very angle of the joint: a little off it, one of them would be beyond its range, where it may run far away.
     pub(super) fn assign(&self, angles: &[f64]) -> Vec<Vec<(usize, f64)>> {
         let mut samples = vec![Vec::new(); self.count()];
         let (from, to) = (self.ends[0], self.ends[self.count()]);
@@ -107,16 +108,32 @@ impl Layout {
                 v = from;
             }
             let segment = self.ends[1..self.count()].partition_point(|end| *end <= v + ON_JOINT);
+            let on_first_end = (v - self.ends[segment]).abs() <= ON_JOINT && (segment > 0 || joined);
+            if on_first_end {
+                v = self.ends[segment];
+            }
             samples[segment].push((i, v));
-            let on_first_end = (v - self.ends[segment]).abs() <= ON_JOINT;
             if on_first_end && segment > 0 {
                 samples[segment - 1].push((i, v));
-            } else if on_first_end && joined {
+            } else if on_first_end {
                 samples[self.count() - 1].push((i, to));
             }
         }
         samples
     }
+}
+
+/// The angle of the joint on which an angle lies, else the angle.
+pub(super) fn on_joint(angle: f64, section: &EllipticSection) -> f64 {
+    let near = |joint: &f64| {
+        let gap = angle - joint;
+        let gap = if section.is_closed() { gap - TAU * (gap / TAU).round() } else { gap };
+        gap.abs() <= ON_JOINT
+    };
+    let segments = section.segments();
+    // One series in the section's own angle is periodic and has no joint, one in its own angle begins and ends at one.
+    let closed_up = section.is_closed() && (segments.len() > 1 || segments[0].local);
+    segments.iter().skip(usize::from(!closed_up)).map(|segment| segment.from).find(near).unwrap_or(angle)
 }
 
 /// Estimate of the condition number of the basis of `harmonics` harmonics over a range of angles, radians:

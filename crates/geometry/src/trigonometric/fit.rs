@@ -1,5 +1,6 @@
 //! Fitting sections to curves.
 
+use super::composite::on_joint;
 use super::crossing::crossing;
 use super::error::{FitError, FitWarning};
 use super::joints::{Automatic, Joints, automatic};
@@ -266,11 +267,7 @@ pub(super) fn finished(
     let curve = || samples.name.clone();
     let distances = &solved.distances;
     let worst = (0..distances.len()).fold(0, |worst, i| if distances[i] > distances[worst] { i } else { worst });
-    let worst = WorstPoint {
-        point: samples.points[worst],
-        angle: angles[worst],
-        distance: distances[worst] * samples.diagonal,
-    };
+    let (point, at, distance) = (samples.points[worst], angles[worst], distances[worst] * samples.diagonal);
     let errors = errors(distances.iter().copied());
     let most = harmonics.iter().copied().max().unwrap_or(0);
 
@@ -288,8 +285,7 @@ pub(super) fn finished(
         warnings.push(FitWarning::FewPoints { curve, harmonics, points: count, most });
     }
     if !met && matches!(options.harmonics, Harmonics::Smallest { .. }) {
-        let (curve, distance, at) = (curve(), worst.distance, worst.point);
-        warnings.push(FitWarning::NotMet { curve, harmonics: most, distance, at });
+        warnings.push(FitWarning::NotMet { curve: curve(), harmonics: most, distance, at: point });
     }
 
     let segments = solved
@@ -304,7 +300,7 @@ pub(super) fn finished(
         diagonal: samples.diagonal,
         met,
         harmonics,
-        worst,
+        worst: WorstPoint { point, angle: on_joint(at, &section), distance },
         samples: count,
         reversed: samples.reversed,
         warnings,

@@ -41,7 +41,7 @@ pub struct FitReport {
 pub struct WorstPoint {
     /// The sample, metres.
     pub point: DVec3,
-    /// Its angle, radians.
+    /// Its angle, radians; that of the joint on which it lies.
     pub angle: f64,
     /// The distance, metres.
     pub distance: f64,

@@ -66,6 +66,23 @@ impl Line {
         (self.point(behind) - self.point(before)).normalize_or_zero()
     }
 
+    /// Unit direction at a running length (at the end that is nearer, beyond one) of an open line: [`Self::direction`]
+    /// where there is `reach` on both sides; within `reach` of an end, where that is the direction of a place further in,
+    /// turned on as the line turns from the `reach` before.
+    pub(super) fn tangent(&self, at: f64, reach: f64) -> DVec3 {
+        let length = self.length();
+        let at = at.clamp(0.0, length);
+        // What the direction stands for lies halfway between the points that it is taken from.
+        let middle = |at: f64| 0.5 * ((at - reach).max(0.0) + (at + reach).min(length));
+        let inner = if at < 0.5 * length { at + reach } else { at - reach }.clamp(0.0, length);
+        let (here, there) = (self.direction(at, reach), self.direction(inner, reach));
+        let apart = middle(at) - middle(inner);
+        if apart == 0.0 {
+            return here;
+        }
+        (here + (here - there) * ((at - middle(at)) / apart)).normalize_or_zero()
+    }
+
     /// The nearest place whose direction is within the angle of `direction` (whose cosine is `alike`), whichever way it
     /// runs; the nearest of all where none is. Beyond the ends of an open line, it goes on straight, in its direction
     /// over `reach`.

@@ -104,7 +104,8 @@ pub fn clean(strokes: &[Curve], cleaning: &Cleaning) -> Result<Vec<Cleaned>, Cle
 /// one, or where the end of one lies beside the other and that one's beginning beside the first, so that it goes on in
 /// the same direction; and where both belong with a third. Strokes that cross, or part like the arms of a Y, stay apart.
 /// A line is closed where one of its strokes is, and where its end, after all strokes that go on there, lies within the
-/// distance of its beginning and runs the same way: arcs that only together come around make a closed curve.
+/// distance of its beginning and runs the same way, or would if both went on bending as they do: arcs that only together
+/// come around make a closed curve.
 ///
 /// Method: the principal curve of the strokes (T. Hastie and W. Stuetzle 1989, "Principal curves", J. Amer. Statist.
 /// Assoc. 84): from the longest stroke, prolonged by those that go on beyond its ends, points of all strokes, evenly

@@ -123,15 +123,19 @@ fn beyond(
 /// The line closed, where its end lies beside its beginning and runs the same way.
 fn ring(line: &Line, distance: f64, alike: f64) -> Option<Line> {
     let length = line.length();
-    let (end, direction) = (line.point(length), line.direction(length, distance));
+    let end = line.point(length);
     let head = Line::new(line.points().iter().copied().take(line.points().len() / 3).collect(), false)?;
-    let foot = head.foot(end, direction, alike, distance);
-    let same_way = head.direction(foot.at, distance).dot(direction) >= alike;
-    // The end may stop short of the beginning by no more than the distance.
-    let near = foot.away <= distance && foot.at >= -distance && foot.at < head.length();
-    if !(near && same_way && length - foot.at >= SHORTEST_RING * distance) {
-        return None;
-    }
+    let meeting = |direction: DVec3, of_head: &dyn Fn(f64) -> DVec3| {
+        let foot = head.foot(end, direction, alike, distance);
+        let same_way = of_head(foot.at).dot(direction) >= alike;
+        // The end may stop short of the beginning by no more than the distance.
+        let near = foot.away <= distance && foot.at >= -distance && foot.at < head.length();
+        (near && same_way && length - foot.at >= SHORTEST_RING * distance).then_some(foot)
+    };
+    // In a tight bend, what leads to the end and what leads away from the beginning point different ways; they still run
+    // the same way where both go on bending as they do.
+    let foot = meeting(line.direction(length, distance), &|at| head.direction(at, distance))
+        .or_else(|| meeting(line.tangent(length, distance), &|at| head.tangent(at, distance)))?;
     let first = line.points().iter().zip(0..).find(|(p, _)| {
         let own = head.foot(**p, line.direction(0.0, distance), 0.0, distance);
         own.at >= foot.at

@@ -1,12 +1,11 @@
 //! Vertices inside of strokes drawn over a mesh in a view.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::{SelectError, Selection};
 use crate::curve::Curve;
-use crate::mesh::stroke::behind;
+use crate::mesh::stroke::{Under, behind, is_seen};
 use crate::mesh::{Mesh, MeshRays};
-use crate::polygon::encloses;
 
 /// Vertices between two questions whether to go on.
 const STEP: usize = 4096;
@@ -30,13 +29,13 @@ pub fn by_lasso(
         return Err(SelectError::NotFinite { what: "direction" });
     }
     let direction = direction.try_normalize().ok_or(SelectError::NoDirection)?;
-    let rays = MeshRays::new(mesh).map_err(|_| SelectError::NoPolygons)?;
-    let (e1, e2) = direction.any_orthonormal_pair();
-    let flat = |p: DVec3| DVec2::new(p.dot(e1), p.dot(e2));
-    let outlines: Vec<Vec<DVec2>> = strokes.iter().map(|s| s.points().iter().map(|p| flat(*p)).collect()).collect();
+    if mesh.polygon_count() == 0 {
+        return Err(SelectError::NoPolygons);
+    }
+    let drawn: Vec<Under> = strokes.iter().map(|stroke| Under::new(stroke, direction)).collect();
+    let under = |stroke: &Under| stroke.rays(mesh).map_err(|_| SelectError::NoPolygons);
+    let rays: Vec<Option<MeshRays>> = drawn.iter().map(under).collect::<Result<_, _>>()?;
     let reach = strokes.iter().map(|stroke| behind(mesh, stroke)).fold(0.0, f64::max);
-    // What a vertex is hidden by lies farther before it than rounding puts its own polygons.
-    let tolerance = 1e-6 * reach;
     let count = mesh.positions().len();
     let mut inside = vec![false; count];
     for (vertex, within) in inside.iter_mut().enumerate() {
@@ -44,10 +43,10 @@ pub fn by_lasso(
             return Ok(None);
         }
         let at = mesh.positions()[vertex];
-        let place = flat(at);
-        *within = outlines.iter().any(|outline| encloses(outline, place))
-            && (through
-                || rays.first(at - reach * direction, direction).is_none_or(|hit| hit.along > reach - tolerance));
+        *within = drawn.iter().zip(&rays).any(|(stroke, rays)| {
+            let seen = || rays.as_ref().is_none_or(|rays| is_seen(rays, at, direction, reach));
+            stroke.encloses(at) && (through || seen())
+        });
     }
     Ok(Some(Selection::by(count, |vertex| inside[vertex])))
 }
