@@ -14,7 +14,7 @@ use graphs::Saved;
 use maquette_geometry::file_format::obj;
 use maquette_geometry::mesh::{Mesh, Topology, measure};
 use maquette_geometry::scene::{Material, MeshItem, Scene};
-use maquette_graph::{Evaluation, Evaluator, EventLog, Literal, OutcomeState};
+use maquette_graph::{Evaluation, Evaluator, Literal};
 use maquette_nodes::wire;
 
 /// Places of the vertices of a selection, before and after.
