@@ -95,14 +95,13 @@ fn hash_mesh(hasher: &mut ContentHasher, mesh: &mesh::Mesh) {
         Some(uvs) => hasher.numbers(bytemuck::cast_slice(uvs)),
         None => hasher.integer(u64::MAX),
     }
-    for names in [mesh.groups(), mesh.materials()] {
-        match names {
-            Some(names) => {
-                hasher.integer(names.names().len() as u64);
-                names.names().iter().for_each(|name| hasher.text(name));
-                hasher.indices(names.places());
-            }
-            None => hasher.integer(u64::MAX),
+    // Left out where there are none, so that such meshes keep the hashes they had before meshes had names.
+    for (kind, names) in [mesh.groups(), mesh.materials()].into_iter().enumerate() {
+        if let Some(names) = names {
+            hasher.integer(kind as u64);
+            hasher.integer(names.names().len() as u64);
+            names.names().iter().for_each(|name| hasher.text(name));
+            hasher.indices(names.places());
         }
     }
 }
