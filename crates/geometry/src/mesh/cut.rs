@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 
 use super::curved_side::{CurvedSide, vertex_normals};
+use super::face_names::carried;
 use super::slice::Plane;
 use super::triangulate::polygon_triangles;
 use super::{Mesh, MeshError, measure};
@@ -50,18 +51,19 @@ pub(crate) fn cut(mesh: &Mesh, heights: &[f64], line: Line<'_>) -> Result<Mesh, 
         counts: Vec::new(),
         normals: Vec::new(),
         uvs: Vec::new(),
+        sources: Vec::new(),
     };
     for polygon in 0..mesh.polygon_count() {
         let range = mesh.corner_range(polygon);
         let inside: Vec<bool> = range.clone().map(|c| heights[mesh.corners()[c] as usize] >= 0.0).collect();
         let changes = (0..inside.len()).filter(|i| inside[*i] != inside[(*i + 1) % inside.len()]).count();
         match changes {
-            0 if inside[0] => cutter.polygon(&range.collect::<Vec<_>>()),
+            0 if inside[0] => cutter.polygon(polygon, &range.collect::<Vec<_>>()),
             0 => {}
-            2 => cutter.polygon(&range.collect::<Vec<_>>()),
+            2 => cutter.polygon(polygon, &range.collect::<Vec<_>>()),
             _ => {
                 for triangle in polygon_triangles(mesh, polygon) {
-                    cutter.polygon(&triangle);
+                    cutter.polygon(polygon, &triangle);
                 }
             }
         }
@@ -89,6 +91,8 @@ struct Cutter<'a> {
     counts: Vec<usize>,
     normals: Vec<DVec3>,
     uvs: Vec<DVec2>,
+    /// The polygon that each new one comes from.
+    sources: Vec<Option<usize>>,
 }
 
 impl Cutter<'_> {
@@ -100,8 +104,8 @@ impl Cutter<'_> {
         self.heights[self.vertex(corner) as usize]
     }
 
-    /// Adds what remains of a polygon of these corners.
-    fn polygon(&mut self, corners: &[usize]) {
+    /// Adds what remains of a polygon, or of a part of it, with these corners.
+    fn polygon(&mut self, source: usize, corners: &[usize]) {
         let mut places: Vec<(u32, Place)> = Vec::with_capacity(corners.len() + 1);
         for (i, corner) in corners.iter().enumerate() {
             let next = corners[(i + 1) % corners.len()];
@@ -147,6 +151,7 @@ impl Cutter<'_> {
             }
         }
         self.counts.push(places.len());
+        self.sources.push(Some(source));
     }
 
     fn kept(&mut self, vertex: u32) -> u32 {
@@ -194,6 +199,6 @@ impl Cutter<'_> {
         if self.mesh.uvs().is_some() {
             mesh = mesh.with_uvs(self.uvs)?;
         }
-        Ok(mesh.named(self.mesh.name()))
+        carried(mesh.named(self.mesh.name()), self.mesh, &self.sources)
     }
 }
