@@ -17,7 +17,7 @@ use maquette_geometry::curve::{Curve, closest};
 use maquette_geometry::mesh::{Mesh, MeshCheck, MeshDistance, check, measure};
 use maquette_geometry::sections::Sections;
 use maquette_geometry::surface::ripple;
-use maquette_graph::{Cell, Evaluation, Evaluator, OutcomeState, Report, file};
+use maquette_graph::{Cell, Evaluation, Evaluator, file};
 use maquette_nodes::wire;
 
 /// One sound, closed shell that faces outwards.

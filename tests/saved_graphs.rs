@@ -16,7 +16,7 @@ use maquette_geometry::curve::{Curve, closest};
 use maquette_geometry::mesh::{Mesh, MeshDistance, check, measure};
 use maquette_geometry::sections::Sections;
 use maquette_geometry::surface::ripple;
-use maquette_graph::{Evaluation, Evaluator, WireType};
+use maquette_graph::{Evaluator, WireType};
 use maquette_nodes::wire;
 
 /// Largest distance of a curve's points from a mesh, metres.

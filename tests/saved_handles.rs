@@ -12,7 +12,7 @@ mod graphs;
 use glam::{DQuat, DVec3};
 use graphs::Saved;
 use maquette_geometry::mesh::{Mesh, Topology, measure};
-use maquette_graph::{Evaluation, Evaluator, EventLog, Literal, OutcomeState};
+use maquette_graph::{Evaluation, Evaluator, Literal};
 use maquette_nodes::wire;
 
 /// Places of the vertices of a selection, before and after.

@@ -11,8 +11,7 @@ mod graphs;
 use glam::DVec3;
 use graphs::Saved;
 use maquette_geometry::mesh::{Mesh, MeshDistance, check, measure};
-use maquette_graph::{Edit, Evaluation, Evaluator, EventLog, Literal, OutcomeState, Source};
-use maquette_nodes::wire;
+use maquette_graph::{Edit, Evaluator, EventLog, Literal, Source};
 
 const GROUPS: [&str; 10] = ["head", "body", "hands", "boots", "kilt", "vest", "belt", "pauldrons", "helmet", "bracers"];
 
