@@ -2,6 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
+use super::boundary_loops::KeptLoops;
+
 /// Polygons over shared vertices. A *corner* is one vertex of one polygon; UVs and normals live at the corners, so
 /// that a seam or a hard edge needs no doubled vertex and the mesh stays closed.
 ///
@@ -17,6 +19,7 @@ pub struct Mesh {
     starts: Vec<u32>,
     normals: Option<Vec<DVec3>>,
     uvs: Option<Vec<DVec2>>,
+    pub(super) kept_loops: KeptLoops,
 }
 
 /// Why data does not make a mesh.
@@ -74,7 +77,15 @@ pub enum MeshError {
 impl Default for Mesh {
     /// A mesh without vertices and polygons.
     fn default() -> Self {
-        Self { name: String::new(), positions: vec![], corners: vec![], starts: vec![0], normals: None, uvs: None }
+        Self {
+            name: String::new(),
+            positions: vec![],
+            corners: vec![],
+            starts: vec![0],
+            normals: None,
+            uvs: None,
+            kept_loops: KeptLoops::default(),
+        }
     }
 }
 
@@ -106,7 +117,15 @@ impl Mesh {
             corners.extend_from_slice(indices);
             starts.push(u32::try_from(corners.len()).map_err(|_| MeshError::TooLarge)?);
         }
-        Ok(Self { name: String::new(), positions, corners, starts, normals: None, uvs: None })
+        Ok(Self {
+            name: String::new(),
+            positions,
+            corners,
+            starts,
+            normals: None,
+            uvs: None,
+            kept_loops: KeptLoops::default(),
+        })
     }
 
     /// Makes a mesh from vertices, the vertex indices of all polygons one behind the other, and the number of corners of
@@ -146,7 +165,15 @@ impl Mesh {
             let polygon = starts.partition_point(|start| *start as usize <= corner) - 1;
             return Err(MeshError::IndexOutOfRange { polygon, vertex: corners[corner], vertices: positions.len() });
         }
-        Ok(Self { name: String::new(), positions, corners, starts, normals: None, uvs: None })
+        Ok(Self {
+            name: String::new(),
+            positions,
+            corners,
+            starts,
+            normals: None,
+            uvs: None,
+            kept_loops: KeptLoops::default(),
+        })
     }
 
     /// The same mesh under a name.
@@ -176,6 +203,7 @@ impl Mesh {
             starts: self.starts.clone(),
             normals: None,
             uvs: self.uvs.clone(),
+            kept_loops: self.kept_loops.clone(),
         };
         match normals {
             Some(normals) => mesh.with_normals(normals),

@@ -145,7 +145,9 @@ pub fn cut_along(
 ) -> Result<Mesh, StrokeError> {
     let direction = unit(direction)?;
     let under = Under::new(stroke, direction);
-    let rays = under.rays(mesh)?;
+    if mesh.polygon_count() == 0 {
+        return Err(NoPolygons.into());
+    }
     let name = || stroke.name().to_owned();
     if !stroke.is_closed() {
         return Err(StrokeError::Open { stroke: name() });
@@ -154,8 +156,8 @@ pub fn cut_along(
     if !inside.contains(&true) {
         return Err(StrokeError::NothingInside { stroke: name() });
     }
-    if let Some(rays) = rays.filter(|_| !through) {
-        seen_only(mesh, &rays, direction, behind(mesh, stroke), &mut inside);
+    if !through {
+        seen_only(mesh, &under, direction, behind(mesh, stroke), &mut inside)?;
     }
     if keep == Keep::Outside && !inside.contains(&false) {
         return Err(StrokeError::NothingOutside { stroke: name() });
@@ -228,7 +230,7 @@ pub(super) fn is_seen(rays: &MeshRays, point: DVec3, direction: DVec3, reach: f6
 }
 
 /// Of the pieces inside, leaves the one of which most vertices are seen.
-fn seen_only(mesh: &Mesh, rays: &MeshRays, direction: DVec3, reach: f64, inside: &mut [bool]) {
+fn seen_only(mesh: &Mesh, under: &Under, direction: DVec3, reach: f64, inside: &mut [bool]) -> Result<(), NoPolygons> {
     // Pieces by union of the vertices of each polygon that are inside.
     let mut parent: Vec<u32> = (0..).take(inside.len()).collect();
     fn root(parent: &mut [u32], mut at: u32) -> u32 {
@@ -246,17 +248,22 @@ fn seen_only(mesh: &Mesh, rays: &MeshRays, direction: DVec3, reach: f64, inside:
             parent[a.max(b) as usize] = a.min(b);
         }
     }
-    let mut seen: BTreeMap<u32, usize> = BTreeMap::new();
-    for (vertex, _) in inside.iter().enumerate().filter(|(_, inside)| **inside) {
-        let piece = root(&mut parent, u32::try_from(vertex).unwrap_or(u32::MAX));
-        let visible = is_seen(rays, mesh.positions()[vertex], direction, reach);
-        *seen.entry(piece).or_default() += usize::from(visible);
+    let mut pieces: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    for vertex in (0..).take(inside.len()).filter(|vertex| inside[*vertex as usize]) {
+        pieces.entry(root(&mut parent, vertex)).or_default().push(vertex);
     }
-    let best = seen.iter().max_by_key(|(piece, count)| (**count, std::cmp::Reverse(**piece))).map(|(piece, _)| *piece);
-    for (vertex, within) in inside.iter_mut().enumerate().filter(|(_, within)| **within) {
-        let piece = root(&mut parent, u32::try_from(vertex).unwrap_or(u32::MAX));
-        *within = Some(piece) == best;
+    if pieces.len() < 2 {
+        return Ok(());
     }
+    let Some(rays) = under.rays(mesh)? else { return Ok(()) };
+    let seen = |vertex: &&u32| is_seen(&rays, mesh.positions()[**vertex as usize], direction, reach);
+    let most =
+        |(piece, vertices): &(&u32, &Vec<u32>)| (vertices.iter().filter(seen).count(), std::cmp::Reverse(**piece));
+    let best = pieces.iter().max_by_key(most).map(|(piece, _)| *piece);
+    for (_, vertices) in pieces.iter().filter(|(piece, _)| Some(**piece) != best) {
+        vertices.iter().for_each(|vertex| inside[*vertex as usize] = false);
+    }
+    Ok(())
 }
 
 #[cfg(test)]

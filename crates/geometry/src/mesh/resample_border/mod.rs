@@ -17,7 +17,7 @@ use super::triangulate::polygon_triangles;
 use super::{Mesh, MeshError};
 use crate::border::Border;
 use crate::curve::{SplineError, closest, place};
-use collar::Collar;
+use collar::{Around, Collar};
 use rim::Rim;
 
 /// Fewest and most points of a border.
@@ -200,9 +200,10 @@ fn replaced(
     let told = |share: f64| if progress(share) { Ok(()) } else { Err(E::Stopped) };
     let at = rim.centre();
     let mut fold = at;
+    let around = Around::new(mesh);
     for (attempt, reach) in REACHES.into_iter().enumerate() {
         told(0.2 + 0.1 * attempt as f64)?;
-        let collar = match Collar::of(mesh, rim, reach * even.spacing) {
+        let collar = match Collar::of(mesh, &around, rim, reach * even.spacing) {
             Ok(collar) => collar,
             // Wider ones are no better.
             Err(other) if attempt == 0 => return Err(E::NearAnother { at, other }),
