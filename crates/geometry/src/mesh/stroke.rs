@@ -8,7 +8,7 @@ use super::cut::{Line, cut};
 use super::distance::NoPolygons;
 use super::{Mesh, MeshError, MeshRays, measure};
 use crate::curve::{ArcLength, Curve, CurveError};
-use crate::polygon::encloses;
+use crate::polygon::Inside;
 
 /// Which of the sides of a mesh that lie behind one another in a view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -171,9 +171,7 @@ pub fn cut_along(
 
 /// A stroke as it is seen along a direction, and what lies under it.
 pub(super) struct Under {
-    outline: Vec<DVec2>,
-    low: DVec2,
-    high: DVec2,
+    outline: Inside,
     axes: [DVec3; 2],
 }
 
@@ -181,15 +179,12 @@ impl Under {
     pub(super) fn new(stroke: &Curve, direction: DVec3) -> Self {
         let axes: [DVec3; 2] = direction.any_orthonormal_pair().into();
         let outline: Vec<DVec2> = stroke.points().iter().map(|p| flat(axes, *p)).collect();
-        let (low, high) =
-            outline.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
-        Self { outline, low, high, axes }
+        Self { outline: Inside::new(&outline), axes }
     }
 
     /// Even-odd rule.
     pub(super) fn encloses(&self, point: DVec3) -> bool {
-        let p = flat(self.axes, point);
-        p.cmpge(self.low).all() && p.cmple(self.high).all() && encloses(&self.outline, p)
+        self.outline.encloses(flat(self.axes, point))
     }
 
     /// The part of a mesh that rays through the stroke and what it encloses can meet; `None` where there is none.
@@ -198,8 +193,9 @@ impl Under {
             return Err(NoPolygons);
         }
         // What only touches the box may be met too, by rounding.
-        let margin = DVec2::splat(1e-9 * (measure::diagonal(mesh) + self.low.distance(self.high)));
-        let (low, high) = (self.low - margin, self.high + margin);
+        let (low, high) = self.outline.bounds();
+        let margin = DVec2::splat(1e-9 * (measure::diagonal(mesh) + low.distance(high)));
+        let (low, high) = (low - margin, high + margin);
         Ok(MeshRays::among(mesh, |points| {
             let [a, b, c] = points.map(|p| flat(self.axes, p));
             a.max(b).max(c).cmpge(low).all() && a.min(b).min(c).cmple(high).all()
@@ -226,7 +222,7 @@ pub(super) fn behind(mesh: &Mesh, stroke: &Curve) -> f64 {
 pub(super) fn is_seen(rays: &MeshRays, point: DVec3, direction: DVec3, reach: f64) -> bool {
     // What hides it lies farther before it than rounding puts its own polygons.
     let tolerance = 1e-6 * reach;
-    rays.first(point - reach * direction, direction).is_none_or(|hit| hit.along > reach - tolerance)
+    !rays.any_within(point - reach * direction, direction, reach - tolerance)
 }
 
 /// Of the pieces inside, leaves the one of which most vertices are seen.

@@ -27,7 +27,7 @@ impl Choices for Which {
 pub(crate) fn kind() -> NodeKind {
     let mut node = NodeKind::declare(
         "resample-border",
-        1,
+        2,
         "mesh",
         "Gives an open border of a mesh as many points as wanted, at equal distances, and new faces along it: a blend with \
          as many `nodes` can be welded to it.",

@@ -129,7 +129,8 @@ pub enum ResampleBorderError {
 /// The faces within 0.6 sides of the new border go, more where that is needed; the strip that takes their place is of
 /// least summed square length of its sides between both borders, among strips that do not fold (dynamic programming,
 /// Fuchs, Kedem and Uselton 1977), of quads where two triangles make a convex one. Normals of new corners are those of
-/// the mesh at the old border and at what remains; UVs are those of the nearest place of the old mesh.
+/// the mesh at the old border, square to the smooth new one, and at what remains; UVs are those of the nearest place of
+/// the old mesh.
 ///
 /// A border that has that number of points already, its longest side at most 3 times its shortest, keeps them.
 ///
