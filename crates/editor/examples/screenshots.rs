@@ -47,7 +47,20 @@ fn find(window: &mut Window, node: &str) -> Result<(), Box<dyn Error>> {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = PathBuf::from(std::env::args_os().nth(1).ok_or("say the folder for the pictures")?);
-    let graph = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../graphs/vest.ron");
+    sketching(&folder)?;
+    let mut window = opened("leg-deformed.ron")?;
+    window.state_mut().settings_mut().shading = Shading::Silhouette;
+    settle(&mut window)?;
+    write(&mut window, &folder.join("editor-silhouette.png"))?;
+    let mut window = opened("hand.ron")?;
+    find(&mut window, "index")?;
+    write(&mut window, &folder.join("editor-handle.png"))?;
+    Ok(())
+}
+
+/// A window with a graph of the repository.
+fn opened(graph: &str) -> Result<Window, Box<dyn Error>> {
+    let graph = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../graphs").join(graph);
     let options = Options { path: Some(graph), ..Options::default() };
     let mut window = Harness::builder()
         .with_size(vec2(1440.0, 900.0))
@@ -55,6 +68,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         .renderer(WgpuTestRenderer::new())
         .build_eframe(move |context| App::new(context, options).expect("the editor starts"));
     settle(&mut window)?;
+    Ok(window)
+}
+
+/// The vest: shown, pulled, with zebra stripes, and its graph.
+fn sketching(folder: &Path) -> Result<(), Box<dyn Error>> {
+    let mut window = opened("vest.ron")?;
     find(&mut window, "sorted")?;
     write(&mut window, &folder.join("editor.png"))?;
 

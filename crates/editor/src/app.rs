@@ -12,11 +12,15 @@ use crate::command::{Command, FileCommand};
 use crate::dialog::{Answer, Asking};
 use crate::dock::{self, Pane};
 use crate::document::{Document, ProjectChoice};
+use crate::drawable::Depiction;
 use crate::evaluation_worker::{EvaluationWorker, Job};
 use crate::panel::data::Data;
 use crate::panel::inspector::Inspector;
 use crate::panel::palette::Palette;
+use crate::panel::tour;
+use crate::panel::welcome::Welcome;
 use crate::recovery::Recovery;
+use crate::reference_pictures::ReferencePictures;
 use crate::results::Results;
 use crate::shortcuts;
 use crate::view_state::{Settings, ViewState};
@@ -36,6 +40,8 @@ pub struct Options {
     pub project: ProjectChoice,
     /// Where unsaved work is put aside; `None` for nowhere.
     pub recovery: Option<PathBuf>,
+    /// Whether examples and a tour are offered where no graph is given and none was opened before.
+    pub welcome: bool,
 }
 
 /// Why the editor could not be started.
@@ -54,7 +60,9 @@ pub enum StartError {
 pub(crate) struct Wanted {
     revision: u64,
     targets: Vec<NodeId>,
-    curvature: bool,
+    path: Vec<NodeId>,
+    within: Vec<NodeId>,
+    depiction: Depiction,
     examined: Vec<NodeId>,
 }
 
@@ -74,6 +82,7 @@ pub struct App {
     pub(crate) inspector: Inspector,
     pub(crate) palette: Palette,
     pub(crate) data: Data,
+    pub(crate) welcome: Welcome,
     pub(crate) tree: Tree<Pane>,
     pub(crate) maximised: Option<Pane>,
     /// The panel under the pointer.
@@ -82,6 +91,7 @@ pub struct App {
     pub(crate) commands: Vec<Command>,
     pub(crate) asking: Option<Asking>,
     pub(crate) recovery: Recovery,
+    pub(crate) pictures: ReferencePictures,
     /// Whether unsaved work was given up by an answer.
     pub(crate) is_sure: bool,
     pub(crate) after_saving: Option<FileCommand>,
@@ -99,7 +109,7 @@ impl App {
         let repaint = context.egui_ctx.clone();
         let worker = EvaluationWorker::start(catalogue.clone(), move || repaint.request_repaint())?;
         let stored = |key| context.storage.and_then(|storage| storage.get_string(key));
-        let settings = stored("settings").and_then(|text| ron::from_str(&text).ok()).unwrap_or_default();
+        let settings: Settings = stored("settings").and_then(|text| ron::from_str(&text).ok()).unwrap_or_default();
         let tree = stored("dock").and_then(|text| ron::from_str(&text).ok()).unwrap_or_else(dock::first_layout);
         let graphics = match &context.wgpu_render_state {
             None => Graphics::None,
@@ -124,6 +134,7 @@ impl App {
             inspector: Inspector::default(),
             palette: Palette::default(),
             data: Data::default(),
+            welcome: Welcome::default(),
             tree,
             maximised: None,
             hovered: None,
@@ -131,11 +142,14 @@ impl App {
             commands: Vec::new(),
             asking: None,
             recovery: Recovery::begin(options.recovery.as_deref()),
+            pictures: ReferencePictures::default(),
             is_sure: false,
             after_saving: None,
             may_close: false,
             looked_at_disk: 0.0,
         };
+        app.view.welcome =
+            options.welcome && options.path.is_none() && !app.settings.welcomed && app.settings.recent.is_empty();
         if let Some(path) = options.path {
             app.commands.push(FileCommand::Open(path).into());
             app.apply_all(&context.egui_ctx);
@@ -161,6 +175,11 @@ impl App {
     /// What the evaluation gave.
     pub fn results(&self) -> &Results {
         &self.results
+    }
+
+    /// Whether reference pictures are still read.
+    pub fn reads_pictures(&self) -> bool {
+        self.pictures.is_busy()
     }
 
     /// Asks for something, as a widget does. It happens in the next frame.
@@ -193,18 +212,12 @@ impl App {
     /// What a node of the canvas covers on the screen; for tests, because rectangles of the accessibility tree know nothing of
     /// the zoom.
     pub fn node_on_screen(&self, node: NodeId) -> Option<egui::Rect> {
-        self.canvas.node_on_screen(self.canvas_graph(), &self.view.path, node)
+        self.canvas.node_on_screen(&self.view.path, node)
     }
 
     /// Where the socket of an input of a node of the canvas is on the screen, or that of an output.
-    pub fn socket_on_screen(
-        &self,
-        context: &egui::Context,
-        node: NodeId,
-        port: &str,
-        output: bool,
-    ) -> Option<egui::Pos2> {
-        self.canvas.socket_on_screen(context, self.canvas_graph(), &self.view.path, (node, port, output))
+    pub fn socket_on_screen(&self, node: NodeId, port: &str, output: bool) -> Option<egui::Pos2> {
+        self.canvas.socket_on_screen(&self.view.path, (node, port, output))
     }
 
     pub(crate) fn is_over_canvas(&self, context: &egui::Context) -> bool {
@@ -238,14 +251,24 @@ impl App {
         let active = self.view.active.filter(|id| self.view.path.is_empty() && graph.node(*id).is_some());
         let mut targets = drawn.clone();
         targets.extend(active.filter(|id| !drawn.contains(id)));
-        let curvature = self.settings.shading == Shading::Curvature;
+        let depiction = Depiction {
+            curvature: self.settings.shading == Shading::Curvature,
+            outlines: self.settings.shading == Shading::Silhouette,
+            detail: self.settings.detail,
+        };
         // What costs much is measured of the node that is looked into, while it is.
         let is_looked_into = dock::is_shown(&self.tree, self.maximised, Pane::Data);
         let measures = |id: &NodeId| {
             graph.node(*id).and_then(|node| node.acting_kind()).is_some_and(|kind| kind.has_examination())
         };
         let examined = active.filter(|id| is_looked_into && measures(id)).into_iter().collect();
-        let wanted = Wanted { revision: self.document.revision(), targets, curvature, examined };
+        // Of a graph that was entered, what is displayed and what the inspector shows.
+        let path = self.view.path.clone();
+        let there = self.canvas_graph();
+        let looked_at = self.view.displayed_within.into_iter().chain(self.view.active).filter(|_| !path.is_empty());
+        let mut within: Vec<NodeId> = looked_at.filter(|id| there.node(*id).is_some()).collect();
+        within.dedup();
+        let wanted = Wanted { revision: self.document.revision(), targets, path, within, depiction, examined };
         if self.submitted.as_ref() == Some(&wanted) {
             return;
         }
@@ -256,12 +279,35 @@ impl App {
             graph: graph.clone(),
             targets: wanted.targets.clone(),
             drawn: wanted.targets.clone(),
+            path: wanted.path.clone(),
+            within: wanted.within.clone(),
             folder: self.document.folder(),
             project: self.document.project(),
-            curvature,
+            depiction,
             examined: wanted.examined.clone(),
         });
         self.submitted = Some(wanted);
+    }
+
+    /// Lets the tour go on where its step was done.
+    fn tour(&mut self) {
+        let Some(tour) = self.view.tour else { return };
+        let after = tour.after(&self.document, &self.results);
+        if after != tour {
+            self.turn_to(after);
+        }
+    }
+
+    /// Goes to a step of the tour, with its tool and the line selected.
+    pub(crate) fn turn_to(&mut self, step: tour::Tour) {
+        self.view.tour = Some(step);
+        self.view.tool = step.tool();
+        self.settings.toured |= step == tour::Tour::Done;
+        if let Some(line) = self.document.graph().find(tour::LINE).filter(|_| step != tour::Tour::Done) {
+            self.view.path.clear();
+            self.view.selection = [line].into();
+            self.view.active = Some(line);
+        }
     }
 
     fn questions(&mut self, context: &egui::Context) {
@@ -320,6 +366,7 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         let context = ui.ctx().clone();
         self.listen(&context);
+        self.pictures.update(&context, &self.document);
         self.closing(&context);
         if self.asking.is_none() {
             let over = self.is_over_canvas(&context);
@@ -328,6 +375,7 @@ impl eframe::App for App {
         self.show(ui);
         self.questions(&context);
         self.apply_all(&context);
+        self.tour();
         self.evaluate();
         self.watch_disk(&context);
         if let Some(wait) = self.recovery.tick(&self.document) {

@@ -1,10 +1,13 @@
 //! What widgets ask for. They change nothing themselves: the application applies commands in one place.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use maquette_graph::{Edit, NodeId};
+use maquette_graph::{Edit, NodeId, ReferencePicture, Stroke};
 
-use crate::view_state::Tool;
+use crate::canvas::arrange::Alignment;
+use crate::view_state::{PickedRow, Tool};
+use crate::viewport::camera::Direction;
 
 /// Something that was asked for.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,6 +55,24 @@ pub enum GraphCommand {
         /// The same for all edits of one gesture, such as a drag.
         gesture: Option<String>,
     },
+    /// Puts these pictures behind the sketches of the whole graph.
+    References {
+        /// What the step is called.
+        name: String,
+        /// All of them.
+        pictures: Vec<ReferencePicture>,
+        /// The same for all edits of one gesture.
+        gesture: Option<String>,
+    },
+    /// Adds a node that selects of the active mesh by hand: by a loop drawn in the plane of that name, or by painting.
+    SelectByHand {
+        /// The node that gives the mesh, and its output.
+        mesh: (NodeId, String),
+        /// The plane and the loop; `None` to paint.
+        strokes: Option<(&'static str, Stroke)>,
+    },
+    /// Changes the picked strokes of the active sketch, or all of them where none is picked.
+    Strokes(StrokeDeed),
     /// Ends a gesture.
     EndGesture,
     /// Undoes the last step.
@@ -115,6 +136,50 @@ pub enum GraphCommand {
     },
     /// Places all nodes by what they depend on.
     Arrange,
+    /// Places the selected nodes by what they depend on, where they are.
+    ArrangeSelected,
+    /// Lines the selected nodes up, or spreads them.
+    Align(Alignment),
+    /// Puts a frame around the selected nodes.
+    Frame,
+    /// Collapses the selected nodes, or the contrary where all are.
+    Collapse,
+    /// Lets the first two inputs of the active node change places.
+    Swap,
+}
+
+/// What is done with whole strokes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StrokeDeed {
+    /// A copy of each, beside it.
+    Duplicate,
+    /// A mirror image of each, across the middle of the body.
+    Mirror,
+    /// They run the other way.
+    Reverse,
+    /// Open ones are closed; where all are closed, they are opened.
+    Close,
+    /// Two open ones become one, at the ends that are nearest to each other.
+    Join,
+    /// They go.
+    Delete,
+}
+
+impl StrokeDeed {
+    /// All of them, in the order of the bar.
+    pub const ALL: [Self; 6] = [Self::Duplicate, Self::Mirror, Self::Reverse, Self::Close, Self::Join, Self::Delete];
+
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Duplicate => "Duplicate",
+            Self::Mirror => "Mirror",
+            Self::Reverse => "Reverse",
+            Self::Close => "Close",
+            Self::Join => "Join",
+            Self::Delete => "Delete",
+        }
+    }
 }
 
 /// What a new node is linked to.
@@ -144,6 +209,8 @@ pub enum NewLink {
 pub enum ViewCommand {
     /// Selects nodes; the last one becomes the active one.
     Select(Vec<NodeId>),
+    /// Picks strokes of the active sketch, by their place.
+    PickStrokes(BTreeSet<usize>),
     /// Selects all nodes of the canvas.
     SelectAll,
     /// Selects a node of the whole graph, named as messages name it.
@@ -164,6 +231,8 @@ pub enum ViewCommand {
     FrameAll,
     /// Frames what the selected nodes show.
     FrameSelected,
+    /// Lets the perspective view see without perspective, or with it again.
+    Parallel,
     /// Lets the panel under the pointer fill the window, or puts all back.
     Maximise,
     /// Stops the evaluation.
@@ -172,6 +241,12 @@ pub enum ViewCommand {
     Search,
     /// Shows or hides the keyboard sheet.
     Keys,
+    /// Shows the examples and the way to the tour.
+    Welcome,
+    /// Says which version this is.
+    About,
+    /// Shows what a row of a table speaks of in the views, or nothing.
+    PickRow(Option<PickedRow>),
 }
 
 /// Opening, saving, closing.
@@ -179,6 +254,8 @@ pub enum ViewCommand {
 pub enum FileCommand {
     /// An empty graph.
     New,
+    /// A small graph, and a tour through its making.
+    Tour,
     /// Asks for a file to open.
     OpenDialog,
     /// Opens a file.
@@ -201,6 +278,13 @@ pub enum FileCommand {
         target: FileTarget,
         /// Extensions that are offered, without the dot.
         extensions: Vec<String>,
+    },
+    /// Puts a picture behind the strokes of a view.
+    AddReference {
+        /// The view.
+        view: Direction,
+        /// The picture's file.
+        path: PathBuf,
     },
     /// Asks where to write the results.
     ExportDialog,
@@ -229,6 +313,8 @@ pub enum FileTarget {
     },
     /// A parameter of the graph on the canvas.
     Parameter(String),
+    /// A new reference picture in this view.
+    Reference(Direction),
 }
 
 impl From<GraphCommand> for Command {

@@ -107,6 +107,17 @@ impl Document {
         Ok(Self::of(loaded.graph, Some(path.to_owned()), loaded.problems, choice))
     }
 
+    /// A document without a file, from text of this program.
+    ///
+    /// # Errors
+    /// The text is no graph.
+    pub(crate) fn sample(catalogue: &Catalogue, text: &str, choice: ProjectChoice) -> Result<Self, OpenError> {
+        let mut document = Self::read(catalogue, text.as_bytes(), Path::new("sample.ron"), choice)?;
+        document.path = None;
+        document.written = None;
+        Ok(document)
+    }
+
     /// A document from text that was saved for a recovery; it counts as changed until it is saved.
     ///
     /// # Errors

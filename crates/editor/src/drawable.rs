@@ -10,11 +10,13 @@ use maquette_geometry::curve::Curve;
 use maquette_geometry::mesh::crease::{CREASE_DEGREES, creased_normals};
 use maquette_geometry::mesh::measure::points_bounds;
 use maquette_geometry::mesh::select::split;
-use maquette_geometry::mesh::{Mesh, mean_curvature, triangles};
+use maquette_geometry::mesh::{Mesh, mean_curvature, silhouette_of, triangles};
 use maquette_geometry::scene::Material;
-use maquette_geometry::surface::tessellate::{Tessellation, tessellate};
+use maquette_geometry::surface::tessellate::{Density, Tessellation, tessellate};
+use maquette_geometry::view::View;
 use maquette_graph::{Evaluation, NodeId, Value};
 use maquette_nodes::wire;
+use serde::{Deserialize, Serialize};
 
 /// A corner of a mesh as the graphics card gets it.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -45,6 +47,8 @@ pub(crate) struct Surface {
     pub(crate) edge_length: f64,
     /// Size of the curvature that deserves the strongest colour, 1/m.
     pub(crate) curvature_scale: f32,
+    /// Its outlines from the front, the side and above, as closed lines in space; empty where they were not asked for.
+    pub(crate) outlines: [Vec<Vec<DVec3>>; 3],
 }
 
 /// A line, ready to be drawn and picked.
@@ -66,6 +70,51 @@ pub(crate) enum LineRole {
     Rail,
 }
 
+/// What of values is made ready beside their shape, because it costs time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Depiction {
+    /// The mean curvature of meshes.
+    pub(crate) curvature: bool,
+    /// Their outlines from the front, the side and above.
+    pub(crate) outlines: bool,
+    /// How finely exact surfaces are shown.
+    pub(crate) detail: Detail,
+}
+
+/// How finely exact surfaces are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub enum Detail {
+    /// As a model that is seen from afar: 12 by 24 quads for each part.
+    Coarse,
+    /// 32 by 64 quads.
+    #[default]
+    Medium,
+    /// 96 by 192 quads.
+    Fine,
+}
+
+impl Detail {
+    /// All of them, in the order of the menu.
+    pub const ALL: [Self; 3] = [Self::Coarse, Self::Medium, Self::Fine];
+
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Coarse => "Coarse",
+            Self::Medium => "Medium",
+            Self::Fine => "Fine",
+        }
+    }
+
+    fn density(self) -> Density {
+        match self {
+            Self::Coarse => Density::Grid { rows: 12, columns: 24 },
+            Self::Medium => Density::Grid { rows: 32, columns: 64 },
+            Self::Fine => Density::Grid { rows: 96, columns: 192 },
+        }
+    }
+}
+
 /// A value, ready to be drawn.
 #[derive(Debug)]
 pub(crate) struct Drawable {
@@ -73,6 +122,8 @@ pub(crate) struct Drawable {
     pub(crate) id: u64,
     pub(crate) surface: Option<Surface>,
     pub(crate) lines: Vec<Line>,
+    /// Whether it is a selected part of a mesh, to be shown over that.
+    pub(crate) is_selection: bool,
     /// sRGB with alpha, as the document says; `None` where it says nothing.
     pub(crate) colour: Option<[f32; 4]>,
     /// Lowest and highest coordinates; `None` where nothing is drawn.
@@ -82,6 +133,8 @@ pub(crate) struct Drawable {
 /// What a node puts into the views.
 #[derive(Clone, Debug)]
 pub(crate) struct Shown {
+    /// The nodes that lead to its graph; none for the whole graph.
+    pub(crate) path: Vec<NodeId>,
     pub(crate) node: NodeId,
     pub(crate) drawables: Vec<Arc<Drawable>>,
 }
@@ -89,30 +142,41 @@ pub(crate) struct Shown {
 /// The drawables of the last evaluation, by content.
 #[derive(Default)]
 pub(crate) struct Drawables {
-    known: BTreeMap<(u128, bool), Option<Arc<Drawable>>>,
+    known: BTreeMap<(u128, Depiction), Option<Arc<Drawable>>>,
 }
 
 impl Drawables {
-    /// What these nodes put into the views. What was made before is not made again.
-    pub(crate) fn of(&mut self, evaluation: &Evaluation, nodes: &[NodeId], curvature: bool) -> Vec<Shown> {
+    /// What nodes put into the views: those of an evaluation of the whole graph, and of one within nodes. What was made before
+    /// is not made again.
+    pub(crate) fn of(&mut self, evaluated: &[Evaluated<'_>], depiction: Depiction) -> Vec<Shown> {
         let mut used = BTreeMap::new();
         let mut shown = Vec::new();
-        for &node in nodes {
-            let mut drawables = Vec::new();
-            for value in evaluation.values(node).unwrap_or_default() {
-                let key = (value.hash().0, curvature);
-                let known = used.get(&key).or_else(|| self.known.get(&key)).cloned();
-                let drawable = known.unwrap_or_else(|| drawable(value, curvature).map(Arc::new));
-                used.insert(key, drawable.clone());
-                drawables.extend(drawable);
-            }
-            if !drawables.is_empty() {
-                shown.push(Shown { node, drawables });
+        for Evaluated { path, evaluation, nodes } in evaluated {
+            for &node in *nodes {
+                let mut drawables = Vec::new();
+                for value in evaluation.values(node).unwrap_or_default() {
+                    let key = (value.hash().0, depiction);
+                    let known = used.get(&key).or_else(|| self.known.get(&key)).cloned();
+                    let drawable = known.unwrap_or_else(|| drawable(value, depiction).map(Arc::new));
+                    used.insert(key, drawable.clone());
+                    drawables.extend(drawable);
+                }
+                if !drawables.is_empty() {
+                    shown.push(Shown { path: path.to_vec(), node, drawables });
+                }
             }
         }
         self.known = used;
         shown
     }
+}
+
+/// An evaluation of a graph, and the nodes of it that are looked at.
+pub(crate) struct Evaluated<'a> {
+    /// The nodes that lead to the graph; none for the whole graph.
+    pub(crate) path: &'a [NodeId],
+    pub(crate) evaluation: &'a Evaluation,
+    pub(crate) nodes: &'a [NodeId],
 }
 
 fn fresh_id() -> u64 {
@@ -121,11 +185,11 @@ fn fresh_id() -> u64 {
 }
 
 /// A value as what the views draw; `None` where it is nothing to see.
-fn drawable(value: &Value, curvature: bool) -> Option<Drawable> {
+fn drawable(value: &Value, depiction: Depiction) -> Option<Drawable> {
     if let Some(mesh) = value.get::<wire::Mesh>() {
-        Some(of_mesh(&mesh.0, None, curvature))
+        Some(of_mesh(&mesh.0, None, depiction))
     } else if let Some(result) = value.get::<wire::MeshResult>() {
-        Some(of_mesh(&result.mesh, Some(&result.material), curvature))
+        Some(of_mesh(&result.mesh, Some(&result.material), depiction))
     } else if let Some(curve) = value.get::<wire::Curve>() {
         Some(of_curves(std::slice::from_ref(&curve.0), None))
     } else if let Some(curves) = value.get::<wire::Curves>() {
@@ -142,9 +206,9 @@ fn drawable(value: &Value, curvature: bool) -> Option<Drawable> {
             wire::CrossSections::Series(sections) => of_series(sections),
         })
     } else if let Some(surface) = value.get::<wire::Surface>() {
-        of_surface(surface, curvature)
+        of_surface(surface, depiction)
     } else if let Some(selection) = value.get::<wire::Selection>() {
-        selected_part(selection, curvature)
+        selected_part(selection, depiction)
     } else {
         let borders = value.get::<wire::Borders>()?;
         let curves: Vec<Curve> = borders.0.iter().map(|border| border.curve().clone()).collect();
@@ -153,9 +217,10 @@ fn drawable(value: &Value, curvature: bool) -> Option<Drawable> {
 }
 
 /// What is selected of the mesh, cut where weights pass 0.5.
-fn selected_part(selection: &wire::Selection, curvature: bool) -> Option<Drawable> {
+fn selected_part(selection: &wire::Selection, depiction: Depiction) -> Option<Drawable> {
     let [selected, _] = split(&selection.mesh, &selection.weights).ok()?;
-    (selected.polygon_count() > 0).then(|| of_mesh(&selected, None, curvature))
+    let part = || Drawable { is_selection: true, ..of_mesh(&selected, None, depiction) };
+    (selected.polygon_count() > 0).then(part)
 }
 
 /// Sections that are series, as lines through this many of their points.
@@ -171,6 +236,7 @@ fn of_series(sections: &wire::EllipticSections) -> Drawable {
     };
     Drawable {
         id: fresh_id(),
+        is_selection: false,
         surface: None,
         lines: sampled.iter().map(line).collect(),
         colour: None,
@@ -179,12 +245,13 @@ fn of_series(sections: &wire::EllipticSections) -> Drawable {
 }
 
 /// A surface as a mesh of moderate density. One that is known at its sections only is shown by these.
-fn of_surface(surface: &wire::Surface, curvature: bool) -> Option<Drawable> {
+fn of_surface(surface: &wire::Surface, depiction: Depiction) -> Option<Drawable> {
     match surface {
         wire::Surface::Points(sections) => Some(of_sections(sections)),
         wire::Surface::Series(parts) => {
-            let made = tessellate(parts, &Tessellation::default(), &|_| true).ok()?;
-            Some(of_mesh(&made.mesh, None, curvature))
+            let tessellation = Tessellation { density: depiction.detail.density(), ..Tessellation::default() };
+            let made = tessellate(parts, &tessellation, &|_| true).ok()?;
+            Some(of_mesh(&made.mesh, None, depiction))
         }
     }
 }
@@ -194,7 +261,7 @@ fn bounds(points: impl Iterator<Item = DVec3>) -> Option<[DVec3; 2]> {
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "the graphics card takes single precision")]
-fn of_mesh(mesh: &Mesh, material: Option<&Material>, curvature: bool) -> Drawable {
+fn of_mesh(mesh: &Mesh, material: Option<&Material>, depiction: Depiction) -> Drawable {
     let creased;
     let normals = match mesh.normals() {
         Some(normals) => normals,
@@ -204,7 +271,7 @@ fn of_mesh(mesh: &Mesh, material: Option<&Material>, curvature: bool) -> Drawabl
         }
     };
     let place = |corner: usize| mesh.positions()[mesh.corners()[corner] as usize];
-    let bent = if curvature { mean_curvature(mesh) } else { Vec::new() };
+    let bent = if depiction.curvature { mean_curvature(mesh) } else { Vec::new() };
     let vertices = (0..mesh.corners().len()).map(|corner| Vertex {
         position: place(corner).as_vec3().to_array(),
         normal: normals[corner].as_vec3().to_array(),
@@ -231,14 +298,25 @@ fn of_mesh(mesh: &Mesh, material: Option<&Material>, curvature: bool) -> Drawabl
     sizes.sort_by(f64::total_cmp);
     // One wild vertex must not take the colour from all others.
     let scale = sizes.get(sizes.len() * 95 / 100).copied().unwrap_or(1.0).max(1e-6);
-    let surface = Surface { vertices: vertices.collect(), triangles, wire, edge_length, curvature_scale: scale as f32 };
+    let outlines = if depiction.outlines { outlines(mesh) } else { Default::default() };
+    let surface =
+        Surface { vertices: vertices.collect(), triangles, wire, edge_length, curvature_scale: scale as f32, outlines };
     Drawable {
         id: fresh_id(),
+        is_selection: false,
         bounds: bounds((0..mesh.corners().len()).map(place)),
         surface: Some(surface),
         lines: Vec::new(),
         colour: material.map(|material| material.colour.map(|component| component as f32)),
     }
+}
+
+/// The outlines of a mesh in the three views; none where it is seen from its edge.
+fn outlines(mesh: &Mesh) -> [Vec<Vec<DVec3>>; 3] {
+    [View::FRONT, View::SIDE, View::TOP].map(|view| {
+        let seen = silhouette_of(mesh, view, 0.0, &|_| true);
+        seen.map(|seen| seen.curves.iter().map(|curve| curve.points().to_vec()).collect()).unwrap_or_default()
+    })
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "the graphics card takes single precision")]
@@ -250,6 +328,7 @@ fn of_curves(curves: &[Curve], colour: Option<[f64; 4]>) -> Drawable {
     };
     Drawable {
         id: fresh_id(),
+        is_selection: false,
         surface: None,
         lines: curves.iter().map(line).collect(),
         colour: colour.map(|colour| colour.map(|component| component as f32)),
@@ -268,6 +347,7 @@ fn of_sections(sections: &maquette_geometry::sections::Sections) -> Drawable {
     });
     Drawable {
         id: fresh_id(),
+        is_selection: false,
         surface: None,
         lines: rows.chain(rails).collect(),
         colour: None,

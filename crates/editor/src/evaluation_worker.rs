@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use maquette_graph::file::Project;
 use maquette_graph::{CancelToken, Catalogue, Evaluation, Evaluator, Event, EventKind, Events, Graph, NodeId, Request};
 
-use crate::drawable::{Drawables, Shown};
+use crate::drawable::{Depiction, Drawables, Evaluated, Shown};
 
 /// How long an evaluation that is no longer wanted may go on.
 const PATIENCE: Duration = Duration::from_millis(120);
@@ -26,10 +26,13 @@ pub(crate) struct Job {
     pub(crate) targets: Vec<NodeId>,
     /// Those of them that are drawn.
     pub(crate) drawn: Vec<NodeId>,
+    /// The nodes that were entered, and those within them whose values are wanted.
+    pub(crate) path: Vec<NodeId>,
+    pub(crate) within: Vec<NodeId>,
     pub(crate) folder: PathBuf,
     pub(crate) project: Project,
-    /// Whether the curvature of meshes is wanted.
-    pub(crate) curvature: bool,
+    /// What of values is made ready beside their shape.
+    pub(crate) depiction: Depiction,
     /// The nodes of which is measured what costs too much for every evaluation.
     pub(crate) examined: Vec<NodeId>,
 }
@@ -38,6 +41,8 @@ pub(crate) struct Job {
 pub(crate) struct Finished {
     pub(crate) generation: u64,
     pub(crate) evaluation: Evaluation,
+    /// That of the graph that was entered, with the nodes that lead there.
+    pub(crate) within: Option<(Vec<NodeId>, Evaluation)>,
     pub(crate) shown: Vec<Shown>,
     pub(crate) timeline: Vec<Span>,
 }
@@ -239,12 +244,18 @@ fn evaluate(
     let request = Request::nodes(&job.targets).examine_only(&job.examined);
     let request = request.events(&listener).cancel(cancel).base(&job.folder).project(&job.project);
     let evaluation = evaluator.evaluate(catalogue, &job.graph, &request);
-    let shown = drawables.of(&evaluation, &job.drawn, job.curvature);
+    let looks_within = !job.path.is_empty() && !job.within.is_empty() && !evaluation.cancelled;
+    let inner = Request::nodes(&job.within).events(&listener).cancel(cancel).base(&job.folder).project(&job.project);
+    let within = looks_within.then(|| evaluator.evaluate_within(catalogue, &job.graph, &job.path, &inner)).flatten();
+    let mut evaluated = vec![Evaluated { path: &[], evaluation: &evaluation, nodes: &job.drawn }];
+    evaluated.extend(within.iter().map(|within| Evaluated { path: &job.path, evaluation: within, nodes: &job.within }));
+    let shown = drawables.of(&evaluated, job.depiction);
+    let within = within.map(|within| (job.path, within));
     let spans = std::mem::take(&mut shared.state().spans);
     let mut timeline: Vec<Span> =
         spans.into_iter().filter_map(|(name, (begin, end))| Some(Span { name, begin, end: end? })).collect();
     timeline.sort_by(|a, b| a.begin.cmp(&b.begin).then_with(|| a.name.cmp(&b.name)));
-    Finished { generation: job.generation, evaluation, shown, timeline }
+    Finished { generation: job.generation, evaluation, within, shown, timeline }
 }
 
 struct Listener<'a> {

@@ -17,6 +17,7 @@ mod evaluation_worker;
 mod naming;
 mod panel;
 mod recovery;
+mod reference_pictures;
 pub mod results;
 mod shortcuts;
 mod signs;
@@ -27,6 +28,9 @@ mod viewport;
 mod window;
 
 pub use app::{App, Options, StartError, recovery_folder};
+pub use canvas::arrange::Alignment;
+pub use drawable::Detail;
 pub use evaluation_worker::NodeStatus;
+pub use panel::tour::Tour;
 pub use viewport::camera::Direction;
 pub use viewport::picture::Shading;

@@ -28,6 +28,7 @@ fn main() -> ExitCode {
         path: arguments.graph,
         project: ProjectChoice { root: arguments.project, anywhere: arguments.allow_outside },
         recovery: recovery_folder(),
+        welcome: true,
     };
     let native = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default().with_inner_size([1440.0, 900.0]).with_min_inner_size([640.0, 420.0]),

@@ -70,6 +70,16 @@ impl Results {
         self.finished.as_ref().map(|finished| &finished.evaluation)
     }
 
+    /// The last evaluation of the graph within these nodes; of the whole graph where there are none. `None` where nothing
+    /// within was asked for.
+    pub fn evaluation_within(&self, path: &[NodeId]) -> Option<&Evaluation> {
+        if path.is_empty() {
+            return self.evaluation();
+        }
+        let (evaluated, within) = self.finished.as_ref()?.within.as_ref()?;
+        (evaluated == path).then_some(within)
+    }
+
     /// When each node ran in it.
     pub(crate) fn timeline(&self) -> &[Span] {
         self.finished.as_ref().map_or(&[], |finished| &finished.timeline)

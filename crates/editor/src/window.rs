@@ -5,16 +5,25 @@ use egui_tiles::{Behavior, SimplificationOptions, TileId, Tiles, UiResponse};
 
 use crate::app::{App, is_graph};
 use crate::canvas::Canvas;
-use crate::command::{Command, FileCommand, GraphCommand, NewLink, ViewCommand};
+use crate::canvas::arrange::Alignment;
+use crate::command::{Command, FileCommand, FileTarget, GraphCommand, NewLink, StrokeDeed, ViewCommand};
 use crate::dialog;
 use crate::dock::{self, Pane};
+use crate::drawable::Detail;
 use crate::panel::data::Data;
 use crate::panel::inspector::Inspector;
 use crate::panel::palette::{DraggedKind, Palette};
+use crate::panel::tour::{Asked, Place};
+use crate::panel::welcome::graphs_in;
 use crate::panel::{PanelContext, help, history, performance, problems};
+use crate::shortcuts::keys_of;
 use crate::view_state::Tool;
+use crate::viewport::camera::Direction;
 use crate::viewport::picture::Shading;
 use crate::viewport::{Graphics, ViewPane};
+
+/// What names of pictures end with.
+const PICTURES: [&str; 3] = ["png", "jpg", "jpeg"];
 
 impl App {
     pub(crate) fn show(&mut self, ui: &mut Ui) {
@@ -28,15 +37,28 @@ impl App {
         }
         egui::Panel::bottom("status").show(ui, |ui| self.status(ui));
         egui::CentralPanel::no_frame().show(ui, |ui| self.panels(ui));
-        if self.view.keys && !help::keys(ui) {
-            self.view.keys = false;
-        }
+        self.front(ui);
+        self.drop_pictures(ui);
         let dropped = ui.input(|i| {
             let paths = i.raw.dropped_files.iter().map(|file| file.path());
             paths.into_iter().find(|path| is_graph(path)).map(std::path::Path::to_owned)
         });
         if let Some(path) = dropped {
             self.commands.push(FileCommand::Open(path).into());
+        }
+    }
+
+    /// Pictures that were dropped on a view become its reference pictures.
+    fn drop_pictures(&mut self, ui: &Ui) {
+        let paths: Vec<_> = ui.input(|i| i.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
+        let pictures = paths.into_iter().filter(|path| {
+            path.extension().is_some_and(|e| PICTURES.iter().any(|known| e.eq_ignore_ascii_case(known)))
+        });
+        for path in pictures {
+            match self.hovered {
+                Some(Pane::View(view)) => self.commands.push(FileCommand::AddReference { view, path }.into()),
+                _ => self.complain("drop a picture on the front, side or top view to sketch over it"),
+            }
         }
     }
 
@@ -50,6 +72,7 @@ impl App {
                 results: &self.results,
                 view: &self.view,
                 settings: &mut self.settings,
+                pictures: &self.pictures,
                 commands: &mut self.commands,
             },
             canvas: &mut self.canvas,
@@ -92,14 +115,61 @@ impl App {
                 ui.separator();
                 egui::widgets::global_theme_preference_buttons(ui);
             });
-            if ui.button("Keys").on_hover_text("All keys (F1)").clicked() {
-                self.commands.push(ViewCommand::Keys.into());
-            }
+            ui.menu_button("Help", |ui| self.help_menu(ui));
         });
     }
 
+    fn help_menu(&mut self, ui: &mut Ui) {
+        self.item(ui, "Welcome and examples…", "", true, ViewCommand::Welcome);
+        self.item(ui, "Take the tour", "", true, FileCommand::Tour);
+        ui.separator();
+        self.item(ui, "All keys", "F1", true, ViewCommand::Keys);
+        let node = self.view.active.and_then(|id| self.canvas_graph().node(id));
+        let page = node.map_or("Page of the active node".to_owned(), |node| format!("Page of {}", node.kind_name()));
+        if ui.add_enabled(node.is_some(), egui::Button::new(page)).clicked() {
+            self.maximised = None;
+            dock::reveal(&mut self.tree, Pane::Help);
+            ui.close();
+        }
+        ui.separator();
+        self.item(ui, "About Maquette", "", true, ViewCommand::About);
+    }
+
+    /// What stands before the panels: welcome, tour, keys, version.
+    fn front(&mut self, ui: &mut Ui) {
+        if self.view.keys && !help::keys(ui) {
+            self.view.keys = false;
+        }
+        if self.view.about && !help::about(ui.ctx()) {
+            self.view.about = false;
+        }
+        if self.view.welcome {
+            let recent = &self.settings.recent;
+            let stays = self.welcome.show(ui.ctx(), &self.catalogue, recent, &mut self.commands);
+            self.view.welcome = stays;
+            self.settings.welcomed |= !stays;
+        }
+        let Some(tour) = self.view.tour.filter(|_| self.asking.is_none()) else { return };
+        let rects = tour.places().iter().filter_map(|place| match place {
+            Place::FrontView => self.view_on_screen(Direction::Front),
+            Place::Perspective => self.view_on_screen(Direction::Free),
+            Place::Canvas => self.canvas_on_screen(),
+        });
+        let rects: Vec<_> = rects.collect();
+        match tour.show(ui.ctx(), &rects) {
+            Some(Asked::Next) => self.turn_to(tour.next()),
+            Some(Asked::Leave) => {
+                self.view.tour = None;
+                self.settings.toured = true;
+            }
+            None => {}
+        }
+    }
+
     fn item(&mut self, ui: &mut Ui, text: &str, keys: &str, enabled: bool, command: impl Into<Command>) {
-        if ui.add_enabled(enabled, egui::Button::new(text).shortcut_text(keys)).clicked() {
+        let button = egui::Button::new(text);
+        let button = if keys.is_empty() { button } else { button.shortcut_text(keys) };
+        if ui.add_enabled(enabled, button).clicked() {
             self.commands.push(command.into());
             ui.close();
         }
@@ -116,7 +186,7 @@ impl App {
                 }
             });
         });
-        let examples = examples(&self.document.folder());
+        let examples = graphs_in(&self.document.folder());
         ui.add_enabled_ui(!examples.is_empty(), |ui| {
             ui.menu_button("Graphs beside it", |ui| {
                 for path in examples {
@@ -155,6 +225,18 @@ impl App {
         ui.separator();
         self.item(ui, "Select all", "Ctrl+A", true, ViewCommand::SelectAll);
         self.item(ui, "Arrange all", "L", true, GraphCommand::Arrange);
+        self.item(ui, "Arrange selected", "Shift+L", some, GraphCommand::ArrangeSelected);
+        let several = self.view.selection.len() > 1;
+        ui.add_enabled_ui(several, |ui| {
+            ui.menu_button("Align", |ui| {
+                for alignment in Alignment::ALL {
+                    let command = GraphCommand::Align(alignment).into();
+                    let keys = keys_of(&command).unwrap_or_default();
+                    self.item(ui, alignment.name(), &keys, true, command);
+                }
+            });
+        });
+        self.item(ui, "Swap inputs", "Alt+S", self.view.active.is_some(), GraphCommand::Swap);
     }
 
     fn view_menu(&mut self, ui: &mut Ui) {
@@ -164,6 +246,11 @@ impl App {
         }
         ui.separator();
         let settings = &mut self.settings;
+        ui.menu_button("Detail of exact surfaces", |ui| {
+            for detail in Detail::ALL {
+                ui.radio_value(&mut settings.detail, detail, detail.name());
+            }
+        });
         ui.checkbox(&mut settings.wire, "Edges");
         ui.checkbox(&mut settings.curves, "Curves");
         ui.checkbox(&mut settings.sections, "Sections and rails");
@@ -174,8 +261,17 @@ impl App {
         ui.checkbox(&mut settings.maya_navigation, "Navigate as in Maya")
             .on_hover_text("Alt with the left, middle and right button; otherwise as in Blender, with the middle one");
         ui.separator();
+        ui.menu_button("Add reference picture", |ui| {
+            for view in [Direction::Front, Direction::Side, Direction::Top] {
+                let extensions = PICTURES.map(str::to_owned).to_vec();
+                let command = FileCommand::Browse { target: FileTarget::Reference(view), extensions };
+                self.item(ui, &format!("{} view…", view.name()), "", true, command);
+            }
+        });
+        ui.separator();
         self.item(ui, "Frame all", "Home", true, ViewCommand::FrameAll);
         self.item(ui, "Frame selected", "F", true, ViewCommand::FrameSelected);
+        self.item(ui, "With or without perspective", "5", true, ViewCommand::Parallel);
     }
 
     fn tools(&mut self, ui: &mut Ui) {
@@ -202,6 +298,9 @@ impl App {
                     field.on_hover_text("How far a stroke may be from the pen: larger is smoother");
                     settings.tolerance = millimetres / 1000.0;
                     ui.checkbox(&mut settings.symmetric, "symmetric").on_hover_text("Draws the mirror image too");
+                    ui.checkbox(&mut settings.snap, "snap").on_hover_text(
+                        "Ends are caught by other curves, where they cross this plane, and by the middle",
+                    );
                 }
                 Tool::Pull => {
                     ui.label("radius");
@@ -212,7 +311,31 @@ impl App {
                     field.on_hover_text("How far along the stroke neighbours follow");
                     settings.pull_radius = centimetres / 100.0;
                 }
-                Tool::Select | Tool::Erase => {
+                Tool::Transform => {
+                    for deed in StrokeDeed::ALL {
+                        if ui.button(deed.name()).clicked() {
+                            self.commands.push(GraphCommand::Strokes(deed).into());
+                        }
+                    }
+                }
+                Tool::Picture => {
+                    ui.label("length");
+                    let field = egui::DragValue::new(&mut settings.known_length).range(1e-3..=1e4).speed(0.01);
+                    let field = ui.add(field.max_decimals(4).suffix(" m"));
+                    field.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::DragValue, true, "known length"));
+                    field.on_hover_text("What Shift+dragging along something in the picture makes it measure");
+                    ui.label(RichText::new(Tool::Picture.description()).weak());
+                }
+                Tool::Paint => {
+                    ui.label("brush");
+                    let mut centimetres = settings.brush * 100.0;
+                    let field = egui::DragValue::new(&mut centimetres).range(0.01..=1000.0).speed(0.05).suffix(" cm");
+                    let field = ui.add(field);
+                    field.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::DragValue, true, "brush"));
+                    field.on_hover_text("Radius of the brush");
+                    settings.brush = centimetres / 100.0;
+                }
+                Tool::Select | Tool::Cut | Tool::Erase | Tool::Lasso => {
                     ui.label(RichText::new(self.view.tool.description()).weak());
                 }
             }
@@ -265,18 +388,6 @@ impl App {
             }
         }
     }
-}
-
-/// The graphs of a folder, or, where it has none, of the folder `graphs` in it: the examples, in a copy of the repository.
-fn examples(folder: &std::path::Path) -> Vec<std::path::PathBuf> {
-    let graphs = |folder: &std::path::Path| {
-        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-        let mut graphs: Vec<_> = entries.map(|entry| entry.path()).filter(|path| is_graph(path)).collect();
-        graphs.sort();
-        graphs
-    };
-    let here = graphs(folder);
-    if here.is_empty() { graphs(&folder.join("graphs")) } else { here }
 }
 
 /// The panels with what they show.

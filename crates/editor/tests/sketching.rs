@@ -161,3 +161,22 @@ fn a_click_on_a_surface_or_a_stroke_selects_what_made_it() {
     click_at(&mut window, rect.left_top() + egui::vec2(8.0, 60.0));
     assert_eq!(window.state().view().active, None);
 }
+
+#[test]
+fn strokes_within_a_group_are_drawn_and_what_holds_the_group_follows() {
+    let mut window = opened(&graph("warrior.ron"));
+    let (before, text_before) = (hash(&window, "helmet bowl"), text(&window));
+    window.state_mut().ask(ViewCommand::Find("helmet/ridge".to_owned()));
+    settle(&mut window);
+    assert_eq!(window.state().view().path.len(), 1, "it is entered");
+    press(&mut window, Modifiers::NONE, Key::T);
+    let side = rect(&window, "Side view").center();
+    window.hover_at(side);
+    window.run_steps(2);
+    press(&mut window, Modifiers::SHIFT, Key::ArrowUp);
+    settle(&mut window);
+    assert_eq!(window.state().document().history().undo_name(), Some("nudge strokes"), "{}", message(&window));
+    assert!(before.is_some() && hash(&window, "helmet bowl") != before, "the helmet follows");
+    undo(&mut window);
+    assert_eq!((hash(&window, "helmet bowl"), text(&window)), (before, text_before));
+}

@@ -10,6 +10,7 @@ use crate::interface::{GraphOutput, OutputSource};
 use crate::literal::Literal;
 use crate::node_kind::NodeKind;
 use crate::parameter::Parameter;
+use crate::presentation::{Frame, ReferencePicture};
 use crate::topology::Topology;
 use crate::value::Value;
 
@@ -73,6 +74,8 @@ pub struct Node {
     /// The graph within, where the kind is `graph` or `repeat`.
     pub(crate) body: Option<Arc<Body>>,
     pub(crate) muted: bool,
+    /// Whether the editor draws only its title and sockets.
+    pub(crate) collapsed: bool,
     /// What it does while it is muted.
     pub(crate) bypass: Option<Arc<NodeKind>>,
     pub(crate) inputs: BTreeMap<String, Source>,
@@ -107,6 +110,11 @@ impl Node {
     /// Whether it passes its inputs on in place of doing its work.
     pub fn is_muted(&self) -> bool {
         self.muted
+    }
+
+    /// Whether the editor draws only its title and sockets.
+    pub fn is_collapsed(&self) -> bool {
+        self.collapsed
     }
 
     /// What it does: that of its kind, or, while it is muted, passing on.
@@ -290,6 +298,8 @@ pub struct Graph {
     identity: u64,
     /// The artist's remark on the whole.
     pub notes: String,
+    pub(crate) frames: Vec<Frame>,
+    pub(crate) references: Vec<ReferencePicture>,
     /// Top-level fields of the file that this version does not know: name and text, kept as they were.
     pub(crate) unknown_fields: Vec<(String, String)>,
     /// Layout entries of the file that belong to no node.
@@ -320,6 +330,8 @@ impl Clone for Graph {
             // A copy goes its own way, so an evaluator must not take one for the other.
             identity: NEXT_IDENTITY.fetch_add(1, Ordering::Relaxed),
             notes: self.notes.clone(),
+            frames: self.frames.clone(),
+            references: self.references.clone(),
             unknown_fields: self.unknown_fields.clone(),
             unknown_layout: self.unknown_layout.clone(),
             unknown_kinds: self.unknown_kinds.clone(),
@@ -342,6 +354,8 @@ impl Graph {
             revision: 0,
             identity: NEXT_IDENTITY.fetch_add(1, Ordering::Relaxed),
             notes: String::new(),
+            frames: Vec::new(),
+            references: Vec::new(),
             unknown_fields: Vec::new(),
             unknown_layout: Vec::new(),
             unknown_kinds: BTreeMap::new(),
@@ -461,6 +475,7 @@ impl Graph {
                 kind,
                 body: None,
                 muted: false,
+                collapsed: false,
                 bypass: None,
                 inputs: BTreeMap::new(),
                 position: None,

@@ -59,6 +59,7 @@ mod one_line;
 mod parameter;
 mod port;
 mod ports;
+mod presentation;
 mod report;
 mod topology;
 mod unknown_fields;
@@ -80,5 +81,6 @@ pub use node_kind::{ChoiceInput, Choices, Input, NodeKind, OptionalInput, Output
 pub use parameter::Parameter;
 pub use port::{InputSpec, OptionSpec, OutputSpec, Range, Unit};
 pub use ports::{AtPort, NodeError, Ports};
+pub use presentation::{Frame, PresentationError, ReferencePicture};
 pub use report::{Cell, Column, Figure, FigureHandle, FigureSpec, Report, Table, TableHandle, TableSpec};
 pub use value::{ContentHash, ContentHasher, Value, Wire, WireType};

@@ -5,7 +5,7 @@
 mod kinds;
 
 use kinds::{Rig, Samples, state};
-use maquette_graph::{Edit, Literal, OutcomeState, Request, file};
+use maquette_graph::{Edit, EventLog, Literal, NodeId, OutcomeState, Request, file};
 
 /// (a + twice) + b, in two nodes.
 const SUM: &str = r#"(
@@ -244,4 +244,69 @@ fn a_file_read_within_is_read_again_when_it_changes() {
         put("a.txt", "one");
         assert_eq!(read(&mut rig).0, "one");
     }
+}
+
+#[test]
+fn nodes_within_are_evaluated_with_what_they_are_given_there() {
+    for threads in [1, 8] {
+        let mut rig = load(
+            threads,
+            &format!(
+                r#"(version: 1, nodes: {{
+    "one": (kind: "add", inputs: {{ "a": 0.5, "b": 0.5 }}),
+    "outer": (kind: "graph", inputs: {{ "x": Link("one.sum") }}, body: (
+        parameters: {{ "x": (value: 0.0) }},
+        nodes: {{
+            "more": (kind: "add", inputs: {{ "a": Parameter("x"), "b": 10.0 }}),
+            "inner": (kind: "graph", inputs: {{ "a": Link("more.sum"), "b": 3.0 }}, body: {SUM}),
+        }},
+        outputs: {{ "sum": (from: "inner.sum") }},
+    )),
+}})"#
+            ),
+        );
+        let outer = rig.id("outer");
+        let middle = rig.graph.node(outer).unwrap().body().unwrap().graph().unwrap();
+        let inner = middle.find("inner").unwrap();
+        let innermost = middle.node(inner).unwrap().body().unwrap().graph().unwrap();
+        let [more, first, second] =
+            [middle.find("more"), innermost.find("first"), innermost.find("second")].map(|id| id.unwrap());
+        let (catalogue, graph) = (&rig.catalogue, &rig.graph);
+        let mut within = |path: &[NodeId], node| {
+            let log = EventLog::default();
+            let request = Request::nodes(&[node]).events(&log);
+            let evaluation = rig.evaluator.evaluate_within(catalogue, graph, path, &request)?;
+            let mut ran: Vec<String> =
+                log.take().into_iter().filter_map(|line| line.strip_prefix("finished ").map(str::to_owned)).collect();
+            ran.sort();
+            Some((evaluation.value::<f64>(node, "sum").copied().unwrap(), ran))
+        };
+        assert_eq!(within(&[outer], more), Some((11.0, vec!["one".to_owned(), "outer/more".to_owned()])));
+        assert_eq!(within(&[outer, inner], first).unwrap(), (22.0, vec!["outer/inner/first".to_owned()]));
+        // What was evaluated there is remembered, for those within and for the whole.
+        assert_eq!(within(&[outer, inner], second).unwrap(), (25.0, vec!["outer/inner/second".to_owned()]));
+        assert_eq!(within(&[outer, inner], second).unwrap().1, [""; 0]);
+        assert_eq!(within(&[more], first), None, "it has no body");
+        assert_eq!(within(&[outer, more], first), None, "nor has this one");
+        assert_eq!(rig.number("outer.sum"), Some(25.0));
+        assert_eq!(ran(&mut rig, &["outer"]), [""; 0], "looking within disturbs nothing");
+    }
+}
+
+#[test]
+fn what_fails_before_a_node_keeps_one_from_looking_within() {
+    let mut rig = load(
+        1,
+        &format!(
+            r#"(version: 1, nodes: {{
+    "bad": (kind: "root", inputs: {{ "number": -1.0 }}),
+    "sum": (kind: "graph", inputs: {{ "a": Link("bad.root") }}, body: {SUM}),
+}})"#
+        ),
+    );
+    let sum = rig.id("sum");
+    let first = rig.graph.node(sum).unwrap().body().unwrap().graph().unwrap().find("first").unwrap();
+    let (catalogue, graph) = (&rig.catalogue, &rig.graph);
+    let evaluation = rig.evaluator.evaluate_within(catalogue, graph, &[sum], &Request::nodes(&[first]));
+    assert!(evaluation.is_none());
 }

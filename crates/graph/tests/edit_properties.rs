@@ -11,8 +11,8 @@ use std::sync::Arc;
 use kinds::{Rig, Samples};
 use maquette_graph::edit::compound::{self, Incoming};
 use maquette_graph::{
-    Catalogue, Edit, Evaluator, Graph, GraphOutput, History, Literal, NodeId, NodeRecord, OutcomeState, OutputSource,
-    Parameter, Repeat, Request, Source, WireType, file,
+    Catalogue, Edit, Evaluator, Frame, Graph, GraphOutput, History, Literal, NodeId, NodeRecord, OutcomeState,
+    OutputSource, Parameter, ReferencePicture, Repeat, Request, Source, WireType, file,
 };
 use proptest::prelude::*;
 
@@ -38,6 +38,9 @@ enum Deed {
     Move(usize, Option<[f64; 2]>),
     Note(usize, String),
     GraphNotes(String),
+    Collapse(usize, bool),
+    Frame(String, [f64; 2]),
+    Reference(String, f64),
     Insert(usize, usize, usize),
     Replace(usize, usize),
     Dissolve(usize),
@@ -114,6 +117,9 @@ fn plain_deed() -> impl Strategy<Value = Deed> {
         1 => (n(), place()).prop_map(|(node, at)| Deed::Move(node, at)),
         1 => (n(), text()).prop_map(|(node, note)| Deed::Note(node, note)),
         1 => text().prop_map(Deed::GraphNotes),
+        1 => (n(), any::<bool>()).prop_map(|(node, collapsed)| Deed::Collapse(node, collapsed)),
+        1 => (text(), prop::array::uniform2(-9.0..90.0)).prop_map(|(title, size)| Deed::Frame(title, size)),
+        1 => (text(), -0.5..1.5).prop_map(|(file, opacity)| Deed::Reference(file, opacity)),
         2 => (n(), n(), n()).prop_map(|(node, input, kind)| Deed::Insert(node, input, kind)),
         2 => (n(), n()).prop_map(|(node, kind)| Deed::Replace(node, kind)),
         1 => n().prop_map(Deed::Dissolve),
@@ -210,6 +216,16 @@ fn edits(graph: &Graph, catalogue: &Catalogue, deed: &Deed) -> Option<Vec<Edit>>
         Deed::Move(n, position) => Edit::Move { node: node(n)?, position: *position },
         Deed::Note(n, note) => Edit::Note { node: node(n)?, note: note.clone() },
         Deed::GraphNotes(notes) => Edit::GraphNotes(notes.clone()),
+        Deed::Collapse(n, collapsed) => Edit::Collapse { node: node(n)?, collapsed: *collapsed },
+        Deed::Frame(title, size) => {
+            let frame = Frame { title: title.clone(), colour: [0.5; 3], at: *size, size: *size };
+            Edit::Frames(graph.frames().iter().cloned().chain([frame]).collect())
+        }
+        Deed::Reference(file, opacity) => {
+            let [view, file] = ["side".to_owned(), file.clone()];
+            let (centre, width, opacity) = ([0.0; 2], 1.0, *opacity);
+            Edit::References(vec![ReferencePicture { view, file, centre, width, opacity, locked: false, hidden: true }])
+        }
         Deed::Insert(n, input, k) => {
             let to = node(n)?;
             let input = pick(&inputs(graph, to), *input)?;

@@ -5,7 +5,9 @@
 mod kinds;
 
 use kinds::Rig;
-use maquette_graph::{Edit, EditError, Graph, GraphError, Literal, NodeId, NodeRecord, Source, Stroke, file};
+use maquette_graph::{
+    Edit, EditError, Frame, Graph, GraphError, Literal, NodeId, NodeRecord, ReferencePicture, Source, Stroke, file,
+};
 
 /// A file with everything that a graph keeps without knowing it.
 const STRANGE: &str = r#"(
@@ -109,6 +111,15 @@ fn every_edit_has_an_inverse() {
         (Edit::Move { node: last, position: Some([9.0, 10.0]) }, "\"last\": (9.0, 10.0)"),
         (Edit::Note { node: first, note: "other".into() }, "note: \"other\""),
         (Edit::GraphNotes("nothing of it".into()), "notes: \"nothing of it\""),
+        (Edit::Collapse { node: last, collapsed: true }, "collapsed: true"),
+        (
+            Edit::Frames(vec![frame("a \"frame\"", [4.0, 5.0])]),
+            "(title: \"a \\\"frame\\\"\", colour: (0.1, 0.2, 0.3), at: (1.0, 2.0), size: (4.0, 5.0)),",
+        ),
+        (
+            Edit::References(vec![picture("side", 0.25)]),
+            "(view: \"side\", file: \"a.png\", centre: (0.0, 1.0), width: 0.8, opacity: 0.25, locked: true),",
+        ),
     ];
     for (edit, expected) in edits {
         let text = there_and_back(&mut rig, &edit);
@@ -126,6 +137,15 @@ fn every_edit_has_an_inverse() {
         let text = there_and_back(&mut rig, &edit);
         assert!(!text.contains(gone), "{edit:?} gives\n{text}");
     }
+}
+
+fn frame(title: &str, size: [f64; 2]) -> Frame {
+    Frame { title: title.to_owned(), colour: [0.1, 0.2, 0.3], at: [1.0, 2.0], size }
+}
+
+fn picture(view: &str, opacity: f64) -> ReferencePicture {
+    let (view, file) = (view.to_owned(), "a.png".to_owned());
+    ReferencePicture { view, file, centre: [0.0, 1.0], width: 0.8, opacity, locked: true, hidden: false }
 }
 
 #[test]
@@ -148,6 +168,10 @@ fn what_does_not_fit_is_refused_and_changes_nothing() {
         (Edit::set(first, "c", number(1.0)), "has no input \"c\"; it has a, b"),
         (Edit::set(first, "a", number(1e10)), "10000000000 is out of range"),
         (Edit::set(first, "a", number(f64::NAN)), "not a finite number"),
+        (Edit::Frames(vec![frame("", [1.0, 1.0]), frame("", [0.0, 1.0])]), "frame 1 needs finite numbers"),
+        (Edit::References(vec![picture("front", 1.5)]), "reference picture 0 needs finite numbers"),
+        (Edit::References(vec![picture("back", 0.5)]), "stands in \"back\", which is no plane to sketch in"),
+        (Edit::Collapse { node: gone, collapsed: true }, "the node is no longer in the graph"),
         (Edit::Rename { node: first, name: "last".into() }, "already there"),
         (Edit::Rename { node: first, name: " ".into() }, "can't name a node"),
         (Edit::Move { node: gone, position: None }, "the node is no longer in the graph"),
@@ -236,6 +260,9 @@ fn undone_edits_run_nothing() {
         (Edit::Move { node: ids[1], position: Some([1.0, 1.0]) }, vec![]),
         (Edit::Note { node: ids[1], note: "why".into() }, vec![]),
         (Edit::GraphNotes("why not".into()), vec![]),
+        (Edit::Collapse { node: ids[1], collapsed: true }, vec![]),
+        (Edit::Frames(vec![frame("all", [9.0, 9.0])]), vec![]),
+        (Edit::References(vec![picture("top", 1.0)]), vec![]),
         (Edit::add("add", "aside"), vec![]),
     ];
     for (edit, ran) in edits {

@@ -168,6 +168,29 @@ fn texts_that_are_none_are_kept() {
 }
 
 #[test]
+fn frames_and_pictures_that_are_none_are_kept() {
+    let text = "(version: 1, nodes: {\"a\": (kind: \"add\", collapsed: 3)}, frames: [(title: \"x\")], references: 7)";
+    assert_eq!(
+        problems(text),
+        [
+            "1:52: error: node \"a\": the field \"collapsed\" is neither true nor false; write collapsed: true, or remove it",
+            "1:65: warning: the field \"frames\" can't be understood: Unexpected missing field named `colour` in `Frame`; \
+             it is kept as it is; mend it, or update Maquette",
+            "1:93: warning: the field \"references\" can't be understood: Expected opening `[`; it is kept as it is; mend it, \
+             or update Maquette",
+        ]
+    );
+    assert_kept(text, &["collapsed: 3,", "frames: [(title: \"x\")],", "references: 7,"]);
+    // What a newer version knows more of a frame is not lost either.
+    let newer =
+        "(version: 1, nodes: {}, frames: [(title: \"x\", colour: (1, 0, 0), at: (0, 0), size: (1, 1), round: true)])";
+    assert_kept(newer, &["round: true"]);
+    let flat = "(version: 1, nodes: {}, frames: [(colour: (1, 0, 0), at: (0, 0), size: (1, 0))])";
+    assert!(problems(flat)[0].contains("frame 0 needs finite numbers, and a width and height above 0"));
+    assert_kept(flat, &["size: (1, 0)"]);
+}
+
+#[test]
 fn names_without_quotes_are_taken_as_they_are() {
     let text = nodes("rails: (kind: \"add\", inputs: { a: 3.5 }),");
     assert_eq!(

@@ -257,3 +257,18 @@ fn repeats_within_repeats() {
         assert!(rig.log.contains(&"finished rows/2/inner/1/twice".to_owned()), "{:?}", rig.log);
     }
 }
+
+#[test]
+fn within_a_repeated_body_one_looks_at_the_first_time() {
+    let mut rig = rig(1);
+    load(&mut rig, ROOTS);
+    let roots = rig.id("roots");
+    let body = rig.graph.node(roots).unwrap().body().unwrap().graph().unwrap();
+    let (sum, plus) = (body.find("sum").unwrap(), body.find("plus").unwrap());
+    let (catalogue, graph) = (&rig.catalogue, &rig.graph);
+    let evaluation = rig.evaluator.evaluate_within(catalogue, graph, &[roots], &Request::nodes(&[sum, plus])).unwrap();
+    let list = samples(&mut rig, "list.samples");
+    assert_eq!(evaluation.value::<f64>(sum, "sum"), Some(&(list[0] + 1.0)));
+    let first = samples(&mut rig, "roots.roots")[0];
+    assert_eq!(evaluation.value::<f64>(plus, "sum"), Some(&first));
+}

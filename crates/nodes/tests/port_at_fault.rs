@@ -443,6 +443,9 @@ fn selections() {
     let points = |points: &str| vec![("points", Literal::Text(points.to_owned()))];
     of("select-points", closed(), points("1 2")).blames("points", "\"1 2\" is no point");
     of("select-points", empty(), points("1 2 3")).blames("mesh", "no polygons");
+    // Without a point nothing is selected, which is where painting begins.
+    let none = of("select-points", closed(), points("")).run().unwrap();
+    assert!(none.warnings[0].contains("nothing is selected"), "{:?}", none.warnings);
     let lost = of("select-points", closed(), points("1 0.001 0, 5 5 5")).run().unwrap();
     assert!(lost.warnings[0].contains("point 1 at (5, 5, 5) no longer finds its place"), "{:?}", lost.warnings);
     assert_eq!((lost.figure("lost").unwrap().value, lost.figure("selected").unwrap().value), (1.0, 1.0));

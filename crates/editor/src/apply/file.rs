@@ -11,13 +11,17 @@ use crate::app::App;
 use crate::command::{FileCommand, FileTarget, GraphCommand};
 use crate::dialog::{Asking, Purpose};
 use crate::document::Document;
-use crate::view_state::ViewState;
+use crate::panel::tour::{self, Tour};
+use crate::view_state::{Tool, ViewState};
 use crate::viewport::Framing;
+use crate::viewport::camera::Direction;
 
 impl App {
     pub(super) fn apply_file(&mut self, context: &egui::Context, command: FileCommand) {
-        let replaces =
-            matches!(command, FileCommand::New | FileCommand::Open(_) | FileCommand::Recover(_) | FileCommand::Quit);
+        let replaces = matches!(
+            command,
+            FileCommand::New | FileCommand::Tour | FileCommand::Open(_) | FileCommand::Recover(_) | FileCommand::Quit
+        );
         if replaces && self.document.is_changed() && !self.is_sure {
             self.asking = Some(Asking::Unsaved(command));
             return;
@@ -25,6 +29,13 @@ impl App {
         self.is_sure = false;
         match command {
             FileCommand::New => self.take_document(Document::new(self.choice.clone())),
+            FileCommand::Tour => match Document::sample(&self.catalogue, tour::GRAPH, self.choice.clone()) {
+                Ok(document) => {
+                    self.take_document(document);
+                    self.turn_to(Tour::Draw);
+                }
+                Err(error) => self.complain(error),
+            },
             FileCommand::OpenDialog => self.choose(Purpose::Open, self.document.folder(), "ron"),
             FileCommand::Open(path) => match Document::open(&self.catalogue, &path, self.choice.clone()) {
                 Ok(document) => {
@@ -68,6 +79,7 @@ impl App {
                 let extension = extensions.first().cloned().unwrap_or_default();
                 self.choose(Purpose::Name(target), folder, &extension);
             }
+            FileCommand::AddReference { view, path } => self.add_reference(view, &path),
             FileCommand::ExportDialog => {
                 let name =
                     self.document.path().and_then(Path::file_stem).map(|name| name.to_string_lossy().into_owned());
@@ -99,15 +111,40 @@ impl App {
             Purpose::Open => self.commands.push(FileCommand::Open(path).into()),
             Purpose::SaveAs => self.commands.push(FileCommand::SaveAs(path).into()),
             Purpose::Export => self.commands.push(FileCommand::ExportTo(path).into()),
+            Purpose::Name(FileTarget::Reference(view)) => {
+                self.commands.push(FileCommand::AddReference { view, path }.into());
+            }
             Purpose::Name(target) => {
                 let file = Literal::File(relative(&path, &self.document.folder()));
                 let edit = match target {
                     FileTarget::Input { node, input } => Edit::set(node, input, file),
                     FileTarget::Parameter(parameter) => Edit::SetParameter { parameter, literal: Some(file) },
+                    FileTarget::Reference(_) => return,
                 };
                 self.commands.push(GraphCommand::edit(edit).into());
             }
         }
+    }
+
+    /// Puts a picture behind the strokes of a view, in the middle of what it shows.
+    fn add_reference(&mut self, view: Direction, path: &Path) {
+        let folder = self.document.folder();
+        let file = relative(path, &folder);
+        // Said now, and not only when the graph is opened the next time.
+        if let Err(outside) = self.document.project().check(&folder.join(&file)) {
+            self.complain(outside);
+            return;
+        }
+        let placed = self.views.iter().find(|pane| pane.camera.direction == view).and_then(|pane| pane.placed(file));
+        let Some(picture) = placed else {
+            self.complain("a reference picture stands in the front, side or top view: choose one of these");
+            return;
+        };
+        let mut pictures = self.document.graph().references().to_vec();
+        pictures.push(picture);
+        let name = "add a reference picture".to_owned();
+        self.commands.push(GraphCommand::References { name, pictures, gesture: None }.into());
+        self.view.tool = Tool::Picture;
     }
 
     /// Writes the results as they were evaluated last, and says which files.

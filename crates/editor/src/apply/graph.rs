@@ -7,7 +7,7 @@ use maquette_graph::file::Includes;
 use maquette_graph::{Edit, Graph, NodeId, NodeRecord, Source};
 
 use crate::app::App;
-use crate::canvas::arrange;
+use crate::canvas::{arrange, frames, swap};
 use crate::command::{GraphCommand, NewLink};
 use crate::naming::free_name;
 
@@ -18,6 +18,15 @@ impl App {
     pub(super) fn apply_graph(&mut self, context: &egui::Context, command: GraphCommand) {
         match command {
             GraphCommand::Edit { name, edits, gesture } => self.make(&name, edits, gesture.as_deref()),
+            GraphCommand::References { name, pictures, gesture } => {
+                let edits = vec![Edit::References(pictures)];
+                match self.document.step(&self.catalogue, &[], &name, edits, gesture.as_deref()) {
+                    Ok(()) => self.view.message = None,
+                    Err(error) => self.complain(error),
+                }
+            }
+            GraphCommand::SelectByHand { mesh, strokes } => self.select_by_hand(mesh, strokes),
+            GraphCommand::Strokes(deed) => self.apply_strokes(deed),
             GraphCommand::EndGesture => self.document.end_gesture(),
             GraphCommand::Undo => {
                 let undone = self.document.undo(&self.catalogue);
@@ -35,7 +44,10 @@ impl App {
             GraphCommand::Add { kind, at, link } => self.add(&kind, at, link),
             GraphCommand::DropOnLink { node, to, input, at } => self.drop_on_link(node, to, &input, at),
             GraphCommand::Delete => {
-                let edits = self.selected().into_iter().map(Edit::RemoveNode).collect();
+                let selected = &self.view.selection;
+                let links = self.canvas.take_selected_links().into_iter().filter(|(to, _)| !selected.contains(to));
+                let links = links.map(|(to, input)| Edit::Disconnect { to, input });
+                let edits = links.chain(selected.iter().copied().map(Edit::RemoveNode)).collect();
                 self.make("delete", edits, None);
             }
             GraphCommand::Dissolve => self.dissolve(),
@@ -80,13 +92,62 @@ impl App {
                 self.carry_out(&format!("promote {input}"), plan);
             }
             GraphCommand::Arrange => {
-                let places = arrange::arrange(self.canvas_graph());
-                let edits = places
-                    .into_iter()
-                    .map(|(node, place)| Edit::Move { node, position: Some([f64::from(place.x), f64::from(place.y)]) });
-                self.make("arrange", edits.collect(), None);
+                let places = arrange::arrange(self.canvas_graph(), &self.view.expanded);
+                self.place("arrange", places);
                 self.canvas.frame_all = true;
             }
+            GraphCommand::ArrangeSelected => {
+                let rects = self.canvas.rects(&self.view.path, &self.view.selection);
+                let corner = rects.iter().map(|(_, rect)| rect.min).reduce(|a, b| a.min(b)).unwrap_or_default();
+                let (expanded, selected) = (&self.view.expanded, &self.view.selection);
+                let places = arrange::arrange_selected(self.canvas_graph(), expanded, selected, corner);
+                self.place("arrange selected", places);
+            }
+            GraphCommand::Align(alignment) => {
+                let (ids, rects): (Vec<_>, Vec<_>) =
+                    self.canvas.rects(&self.view.path, &self.view.selection).into_iter().unzip();
+                let places = alignment.places(&rects);
+                self.place(&alignment.name().to_lowercase(), ids.into_iter().zip(places));
+            }
+            GraphCommand::Frame => {
+                let rects = self.canvas.rects(&self.view.path, &self.view.selection);
+                match frames::around(rects.into_iter().map(|(_, rect)| rect)) {
+                    Some(frame) => {
+                        let mut all = self.canvas_graph().frames().to_vec();
+                        all.push(frame);
+                        self.make("frame nodes", vec![Edit::Frames(all)], None);
+                    }
+                    None => self.complain("select the nodes that the frame is to be put around"),
+                }
+            }
+            GraphCommand::Collapse => {
+                let selected = self.selected();
+                let graph = self.canvas_graph();
+                let collapsed = !selected.iter().all(|id| graph.node(*id).is_some_and(|node| node.is_collapsed()));
+                let edits = selected.into_iter().map(|node| Edit::Collapse { node, collapsed }).collect();
+                self.make(if collapsed { "collapse" } else { "open out" }, edits, None);
+            }
+            GraphCommand::Swap => self.swap(),
+        }
+    }
+
+    /// Puts nodes there, as one step.
+    fn place(&mut self, name: &str, places: impl IntoIterator<Item = (NodeId, egui::Pos2)>) {
+        let edits = places
+            .into_iter()
+            .map(|(node, place)| Edit::Move { node, position: Some([f64::from(place.x), f64::from(place.y)]) });
+        self.make(name, edits.collect(), None);
+    }
+
+    /// Lets what the first two inputs of the active node hold change places, or says why it can't.
+    fn swap(&mut self) {
+        let Some(node) = self.view.active else {
+            self.complain("select the node whose first two inputs are to change places");
+            return;
+        };
+        match swap::swap(self.canvas_graph(), &self.catalogue, node) {
+            Ok(edits) => self.make("swap inputs", edits, None),
+            Err(error) => self.complain(error),
         }
     }
 
@@ -100,7 +161,7 @@ impl App {
     }
 
     /// Makes edits of the graph on the canvas a step.
-    fn make(&mut self, name: &str, edits: Vec<Edit>, gesture: Option<&str>) {
+    pub(super) fn make(&mut self, name: &str, edits: Vec<Edit>, gesture: Option<&str>) {
         let made = self.document.step(&self.catalogue, &self.view.path, name, edits, gesture);
         match made {
             Ok(()) => self.view.message = None,

@@ -2,6 +2,8 @@
 
 mod file;
 mod graph;
+mod selecting;
+mod strokes;
 mod view;
 
 use crate::app::App;

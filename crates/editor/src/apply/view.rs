@@ -5,14 +5,19 @@ use std::collections::BTreeSet;
 use crate::app::App;
 use crate::command::ViewCommand;
 use crate::viewport::Framing;
+use crate::viewport::camera::Direction;
 
 impl App {
     pub(super) fn apply_view(&mut self, context: &egui::Context, command: ViewCommand) {
         match command {
             ViewCommand::Select(nodes) => {
+                if self.view.active != nodes.last().copied() {
+                    self.view.picked_strokes.clear();
+                }
                 self.view.active = nodes.last().copied();
                 self.view.selection = nodes.into_iter().collect();
             }
+            ViewCommand::PickStrokes(strokes) => self.view.picked_strokes = strokes,
             ViewCommand::SelectAll => {
                 self.view.selection = self.canvas_graph().nodes().map(|(id, _)| id).collect();
                 self.view.active = self.view.active.or(self.view.selection.last().copied());
@@ -36,6 +41,9 @@ impl App {
             ViewCommand::Display(id) => {
                 if self.view.path.is_empty() {
                     self.view.displayed = if self.view.displayed == Some(id) { None } else { Some(id) };
+                } else {
+                    let shown = self.view.displayed_within == Some(id);
+                    self.view.displayed_within = if shown { None } else { Some(id) };
                 }
             }
             ViewCommand::Pin(id) => {
@@ -57,9 +65,15 @@ impl App {
                 }
             }
             ViewCommand::FrameSelected => self.views.iter_mut().for_each(|view| view.framing = Framing::Selected),
+            ViewCommand::Parallel => {
+                let free = self.views.iter_mut().find(|view| view.camera.direction == Direction::Free);
+                if let Some(view) = free {
+                    view.camera.parallel = !view.camera.parallel;
+                }
+            }
             ViewCommand::Maximise => self.toggle_maximised(context),
             ViewCommand::Stop => {
-                if self.results.progress().is_some() {
+                if !self.close_front() && self.results.progress().is_some() {
                     self.worker.stop();
                     self.tell("stopped: the next change evaluates again");
                 }
@@ -72,12 +86,25 @@ impl App {
                 }
             }
             ViewCommand::Keys => self.view.keys = !self.view.keys,
+            ViewCommand::PickRow(row) => self.view.picked_row = row,
+            ViewCommand::Welcome => self.view.welcome = true,
+            ViewCommand::About => self.view.about = !self.view.about,
         }
+    }
+
+    /// Closes what stands before the panels; says whether something did.
+    fn close_front(&mut self) -> bool {
+        let view = &mut self.view;
+        self.settings.welcomed |= view.welcome;
+        let open = [&mut view.keys, &mut view.about, &mut view.welcome].into_iter().find(|open| **open);
+        open.map(|open| *open = false).is_some()
     }
 
     fn leave_selection(&mut self) {
         self.view.selection = BTreeSet::new();
         self.view.active = None;
+        self.view.displayed_within = None;
+        self.view.picked_strokes.clear();
     }
 
     /// Selects the node that messages name so, in the graph where it is.

@@ -30,6 +30,11 @@ fn port_name(context: &PanelContext<'_>, id: NodeId, kind: SocketKind, index: us
 }
 
 impl LinkDrag {
+    /// Whether a link is being dragged from this node.
+    pub(super) fn is_from(&self, id: NodeId) -> bool {
+        self.from.is_some_and(|from| from.0 == id)
+    }
+
     pub(super) fn begin(&mut self, context: &mut PanelContext<'_>, id: NodeId, kind: SocketKind, index: usize) {
         self.from = port_name(context, id, kind, index).map(|_| (id, kind, index));
     }

@@ -10,6 +10,8 @@ pub(crate) struct Port {
     pub(crate) name: String,
     /// `None` where the kind is unknown.
     pub(crate) wire: Option<WireType>,
+    /// Its colour, in light and in dark.
+    pub(crate) colours: [egui::Color32; 2],
     pub(crate) description: String,
     /// Whether the input is linked.
     pub(crate) linked: bool,
@@ -30,6 +32,7 @@ pub(crate) fn inputs(node: &Node) -> Vec<Port> {
             .map(|name| Port {
                 name: name.to_owned(),
                 wire: None,
+                colours: both_colours(None),
                 description: "an input of a kind that this version does not know".to_owned(),
                 linked: linked(name),
                 typed: !linked(name),
@@ -49,6 +52,7 @@ pub(crate) fn inputs(node: &Node) -> Vec<Port> {
         Port {
             name: input.name.clone(),
             wire: Some(input.wire),
+            colours: both_colours(Some(input.wire)),
             description: input.description.clone(),
             linked: matches!(held, Some(Source::Link(_))),
             typed: LiteralKind::of_wire(input.wire).is_some(),
@@ -64,6 +68,7 @@ pub(crate) fn outputs(graph: &Graph, id: NodeId, node: &Node) -> Vec<Port> {
     let port = |name: String, wire, description: String| Port {
         name,
         wire,
+        colours: both_colours(wire),
         description,
         linked: false,
         typed: false,
@@ -94,8 +99,19 @@ pub(crate) fn is_shown(port: &Port, expanded: bool) -> bool {
     expanded || port.linked || (!port.typed && !port.spare)
 }
 
+impl Port {
+    /// Its colour, by its type.
+    pub(crate) fn colour(&self, dark: bool) -> egui::Color32 {
+        self.colours[usize::from(dark)]
+    }
+}
+
+fn both_colours(wire: Option<WireType>) -> [egui::Color32; 2] {
+    [false, true].map(|dark| wire_colour(wire, dark))
+}
+
 /// Colour of a type on the canvas: of the common ones by hand, of all others by their name, so that a new type has one too.
-pub(crate) fn wire_colour(wire: Option<WireType>, dark: bool) -> egui::Color32 {
+fn wire_colour(wire: Option<WireType>, dark: bool) -> egui::Color32 {
     let name = wire.map_or("", |wire| wire.name());
     let hue = match name {
         "" => return egui::Color32::GRAY,

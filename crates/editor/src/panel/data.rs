@@ -5,9 +5,10 @@ use egui::{RichText, Ui};
 use egui_extras::{Column, TableBuilder};
 use maquette_graph::{Cell, Table, Unit};
 
-use crate::command::FileCommand;
+use crate::command::{FileCommand, ViewCommand};
 use crate::panel::PanelContext;
 use crate::signs;
+use crate::view_state::PickedRow;
 
 /// The data panel.
 #[derive(Default)]
@@ -55,16 +56,16 @@ fn order(table: &Table, sorted: Option<(usize, bool)>) -> Vec<usize> {
 
 impl Data {
     pub(crate) fn show(&mut self, ui: &mut Ui, context: &mut PanelContext<'_>) {
-        let Some((id, node)) = context.active().filter(|_| context.is_outermost()) else {
-            ui.label(RichText::new("Select a node of the whole graph to see what it gives.").weak());
+        let Some((id, node)) = context.active() else {
+            ui.label(RichText::new("Select a node to see what it gives.").weak());
             return;
         };
         let kind = node.kind();
-        for (index, value) in context.results.values(id).unwrap_or_default().iter().enumerate() {
+        for (index, value) in context.values(id).unwrap_or_default().iter().enumerate() {
             let name = kind.and_then(|kind| kind.outputs().get(index)).map_or("", |output| output.name.as_str());
             ui.label(format!("{name}: {} ({})", value.summary(), value.wire()));
         }
-        let Some(report) = context.results.report(id) else {
+        let Some(report) = context.report(id) else {
             ui.label(RichText::new("It has no result.").weak());
             return;
         };
@@ -96,15 +97,24 @@ impl Data {
                 }
             }
         });
-        self.table(ui, &report.tables[self.shown]);
+        let table = &report.tables[self.shown];
+        let picked = context.view.picked_row.as_ref().filter(|picked| picked.table == table.name);
+        if let Some(clicked) = self.table(ui, table, picked.map(|picked| picked.row)) {
+            let row = PickedRow { node: id, table: table.name.clone(), row: clicked };
+            // A second click lets go of it.
+            let row = Some(row).filter(|row| context.view.picked_row.as_ref() != Some(row));
+            context.ask(ViewCommand::PickRow(row));
+        }
     }
 
-    fn table(&mut self, ui: &mut Ui, table: &Table) {
+    /// Shows a table; says which row was clicked.
+    fn table(&mut self, ui: &mut Ui, table: &Table, picked: Option<usize>) -> Option<usize> {
         let sorted =
             self.sorted.as_ref().filter(|(name, ..)| *name == table.name).map(|(_, column, down)| (*column, *down));
         let order = order(table, sorted);
         let mut asked = None;
-        let mut builder = TableBuilder::new(ui).striped(true).auto_shrink(false);
+        let mut clicked = None;
+        let mut builder = TableBuilder::new(ui).striped(true).auto_shrink(false).sense(egui::Sense::click());
         for _ in &table.columns {
             builder = builder.column(Column::auto().at_least(60.0).resizable(true));
         }
@@ -126,7 +136,9 @@ impl Data {
             })
             .body(|body| {
                 body.rows(16.0, order.len(), |mut row| {
-                    let cells = &table.rows[order[row.index()]];
+                    let index = order[row.index()];
+                    row.set_selected(picked == Some(index));
+                    let cells = &table.rows[index];
                     for cell in cells {
                         row.col(|ui| {
                             let text = match cell {
@@ -134,8 +146,16 @@ impl Data {
                                 Cell::Number(number) => format!("{number:.6}"),
                                 Cell::Text(text) => text.clone(),
                             };
-                            ui.label(RichText::new(text).size(11.5));
+                            ui.add(egui::Label::new(RichText::new(text).size(11.5)).selectable(false));
                         });
+                    }
+                    let response = row.response();
+                    response.widget_info(|| {
+                        let label = format!("row {index} of {}", table.name);
+                        egui::WidgetInfo::selected(egui::WidgetType::Button, true, picked == Some(index), label)
+                    });
+                    if response.on_hover_text("Show it in the views").clicked() {
+                        clicked = Some(index);
                     }
                 });
             });
@@ -143,6 +163,7 @@ impl Data {
             let down = sorted.is_some_and(|(by, down)| by == column && !down);
             self.sorted = Some((table.name.clone(), column, down));
         }
+        clicked
     }
 }
 

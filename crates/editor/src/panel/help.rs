@@ -61,6 +61,19 @@ fn page(ui: &mut Ui, kind: &NodeKind) {
     }
 }
 
+/// Which version this is; says whether it stays open.
+pub(crate) fn about(context: &egui::Context) -> bool {
+    let mut open = true;
+    let window = egui::Window::new("About Maquette").open(&mut open).collapsible(false).resizable(false);
+    window.anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0]).show(context, |ui| {
+        ui.set_width(320.0);
+        ui.label(RichText::new(concat!("Maquette ", env!("CARGO_PKG_VERSION"))).strong().size(16.0));
+        ui.label(env!("CARGO_PKG_DESCRIPTION"));
+        ui.label(RichText::new(concat!("Licence: ", env!("CARGO_PKG_LICENSE"))).weak());
+    });
+    open
+}
+
 fn entry(ui: &mut Ui, name: &str, facts: &str, description: &str) {
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(name).strong());

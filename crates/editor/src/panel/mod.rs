@@ -7,11 +7,15 @@ pub(crate) mod inspector;
 pub(crate) mod palette;
 pub(crate) mod performance;
 pub(crate) mod problems;
+pub mod tour;
+pub(crate) mod welcome;
 
-use maquette_graph::{Catalogue, Graph, Node, NodeId};
+use maquette_graph::{Catalogue, Graph, Node, NodeId, Outcome, OutcomeState, Report, Value};
 
 use crate::command::Command;
 use crate::document::Document;
+use crate::drawable::Shown;
+use crate::reference_pictures::ReferencePictures;
 use crate::results::Results;
 use crate::view_state::{Settings, ViewState};
 
@@ -22,6 +26,7 @@ pub(crate) struct PanelContext<'a> {
     pub(crate) results: &'a Results,
     pub(crate) view: &'a ViewState,
     pub(crate) settings: &'a mut Settings,
+    pub(crate) pictures: &'a ReferencePictures,
     pub(crate) commands: &'a mut Vec<Command>,
 }
 
@@ -50,6 +55,37 @@ impl<'a> PanelContext<'a> {
         }
         path.push_str(name);
         path
+    }
+
+    /// What became of a node of the canvas.
+    pub(crate) fn outcome(&self, id: NodeId) -> Option<&'a Outcome> {
+        self.results.evaluation_within(&self.view.path)?.outcome(id)
+    }
+
+    /// The outputs of a node of the canvas that was asked for.
+    pub(crate) fn values(&self, id: NodeId) -> Option<&'a [Value]> {
+        self.results.evaluation_within(&self.view.path)?.values(id)
+    }
+
+    /// What a node of the canvas said beside its values.
+    pub(crate) fn report(&self, id: NodeId) -> Option<&'a Report> {
+        match &self.outcome(id)?.state {
+            OutcomeState::Done { report, .. } => Some(report),
+            _ => None,
+        }
+    }
+
+    /// Whether something is of a node of the canvas.
+    pub(crate) fn is_here(&self, shown: &Shown) -> bool {
+        shown.path == self.view.path
+    }
+
+    /// Whether surfaces of something are drawn, and not only its lines: of what is displayed, or of the results.
+    pub(crate) fn is_drawn(&self, shown: &Shown) -> bool {
+        match self.view.displayed_within {
+            Some(node) => self.is_here(shown) && shown.node == node,
+            None => shown.path.is_empty() && self.view.drawn(self.document.graph()).contains(&shown.node),
+        }
     }
 
     /// Whether the whole graph is on the canvas.

@@ -1,6 +1,6 @@
 //! Correcting strokes: pulling, drawing a part anew, going on from an end, erasing, mirroring.
 
-use glam::DVec2;
+use glam::{DAffine2, DVec2};
 use maquette_graph::{Stroke, StrokePoint};
 
 use super::target::{points, stroke_point};
@@ -208,6 +208,110 @@ pub(crate) fn erase(strokes: &[Stroke], path: &[DVec2], reach: f64) -> Vec<Strok
     kept
 }
 
+/// A stroke moved, turned or scaled within its plane.
+pub(crate) fn transformed(stroke: &Stroke, map: DAffine2) -> Stroke {
+    let moved = |p: &StrokePoint| StrokePoint {
+        pressure: p.pressure,
+        ..stroke_point(map.transform_point2(DVec2::new(p.x, p.y)))
+    };
+    Stroke { points: stroke.points.iter().map(moved).collect(), ..stroke.clone() }
+}
+
+/// Points of a new line with the pressure of the nearest of the points it was made from; none where these have none.
+pub(crate) fn with_pressure(line: Vec<DVec2>, from: &[StrokePoint]) -> Vec<StrokePoint> {
+    let pressed: Vec<(DVec2, f64)> = from.iter().filter_map(|p| Some((DVec2::new(p.x, p.y), p.pressure?))).collect();
+    let pressure = |at: DVec2| {
+        let nearer =
+            |a: &&(DVec2, f64), b: &&(DVec2, f64)| a.0.distance_squared(at).total_cmp(&b.0.distance_squared(at));
+        pressed.iter().min_by(nearer).map(|(_, pressure)| *pressure)
+    };
+    line.into_iter().map(|point| StrokePoint { pressure: pressure(point), ..stroke_point(point) }).collect()
+}
+
+/// Cuts strokes where a path crosses them. An open stroke falls into pieces, a closed one is opened; nothing goes.
+pub(crate) fn cut(strokes: &[Stroke], path: &[DVec2]) -> Vec<Stroke> {
+    strokes.iter().flat_map(|stroke| cut_one(stroke, path)).collect()
+}
+
+fn cut_one(stroke: &Stroke, path: &[DVec2]) -> Vec<Stroke> {
+    let line = points(stroke);
+    let mut places: Vec<f64> = Vec::new();
+    for piece in 0..pieces(line.len(), stroke.closed) {
+        let (a, b) = (line[piece], line[(piece + 1) % line.len()]);
+        for across in path.windows(2) {
+            if let Some(along) = crossing([a, b], [across[0], across[1]]) {
+                places.push(piece as f64 + along);
+            }
+        }
+    }
+    places.sort_by(f64::total_cmp);
+    places.dedup_by(|a, b| (*a - *b).abs() < 1e-9);
+    // At its very ends there is nothing to cut off.
+    let last = line.len().saturating_sub(1) as f64;
+    places.retain(|place| stroke.closed || (*place > 1e-9 && *place < last - 1e-9));
+    if places.is_empty() {
+        return vec![stroke.clone()];
+    }
+    let at = |place: f64| {
+        let piece = place.floor();
+        let index = piece as usize % line.len();
+        line[index].lerp(line[(index + 1) % line.len()], place - piece)
+    };
+    let spans: Vec<[f64; 2]> = if stroke.closed {
+        let turn = line.len() as f64;
+        let next = places.iter().skip(1).copied().chain([places[0] + turn]);
+        places.iter().copied().zip(next).map(|(from, to)| [from, to]).collect()
+    } else {
+        let ends = [0.0].into_iter().chain(places.iter().copied()).chain([last]).collect::<Vec<_>>();
+        ends.windows(2).map(|pair| [pair[0], pair[1]]).collect()
+    };
+    let parts = spans.into_iter().enumerate().map(|(number, [from, to])| {
+        let within =
+            (from.floor() as usize + 1..).take_while(|k| (*k as f64) < to - 1e-9).map(|k| line[k % line.len()]);
+        let part: Vec<DVec2> = [at(from)].into_iter().chain(within).chain([at(to)]).collect();
+        let name = if number == 0 { stroke.name.clone() } else { format!("{} {}", stroke.name, number + 1) };
+        Stroke { name, closed: false, points: with_pressure(part, &stroke.points) }
+    });
+    parts.collect()
+}
+
+/// How far along the first segment, from 0 to 1, it crosses the second; `None` where it does not.
+fn crossing([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Option<f64> {
+    let (along, across) = (b - a, d - c);
+    let volume = along.perp_dot(across);
+    if volume == 0.0 {
+        return None;
+    }
+    let (t, u) = ((c - a).perp_dot(across) / volume, (c - a).perp_dot(along) / volume);
+    ((0.0..1.0).contains(&t) && (0.0..=1.0).contains(&u)).then_some(t)
+}
+
+/// Two open strokes as one, joined at the ends that are nearest to each other; `None` where one is closed or empty. Ends that
+/// are at one place count once.
+pub(crate) fn joined(first: &Stroke, second: &Stroke) -> Option<Stroke> {
+    if first.closed || second.closed {
+        return None;
+    }
+    let ends = |stroke: &Stroke| {
+        let line = points(stroke);
+        Some([*line.first()?, *line.last()?])
+    };
+    let ([a, b], [c, d]) = (ends(first)?, ends(second)?);
+    let (first, second) = (first.clone(), second.clone());
+    let ways = [
+        (b.distance(c), false, false),
+        (b.distance(d), false, true),
+        (a.distance(c), true, false),
+        (a.distance(d), true, true),
+    ];
+    let (gap, turn_first, turn_second) = ways.into_iter().min_by(|x, y| x.0.total_cmp(&y.0))?;
+    let first = if turn_first { reversed(&first) } else { first };
+    let second = if turn_second { reversed(&second) } else { second };
+    let skipped = usize::from(gap < 1e-5);
+    let points = first.points.iter().chain(second.points.iter().skip(skipped)).copied().collect();
+    Some(Stroke { points, ..first })
+}
+
 /// The mirror image of a stroke across the middle of the body.
 pub(crate) fn mirrored(stroke: &Stroke) -> Stroke {
     let name = if stroke.name.is_empty() { String::new() } else { format!("{} mirrored", stroke.name) };
@@ -297,6 +401,45 @@ mod tests {
         assert_eq!(opened.len(), 1);
         assert!(!opened[0].closed && opened[0].points.len() == 3);
         assert_eq!(erase(&[row(3)], &[DVec2::new(9.0, 9.0)], 0.1), [row(3)]);
+    }
+
+    #[test]
+    fn a_path_across_cuts_and_loses_nothing() {
+        let across = [DVec2::new(2.5, -1.0), DVec2::new(2.5, 1.0)];
+        let parts = cut(&[row(5)], &across);
+        let xs: Vec<Vec<f64>> = parts.iter().map(|s| s.points.iter().map(|p| p.x).collect()).collect();
+        assert_eq!(xs, [vec![0.0, 1.0, 2.0, 2.5], vec![2.5, 3.0, 4.0]]);
+        assert_eq!(parts[1].name, "s 2");
+        assert_eq!(cut(&[row(2)], &across), [row(2)]);
+        let square = stroke(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]], true);
+        let opened = cut(std::slice::from_ref(&square), &[DVec2::new(0.5, -1.0), DVec2::new(0.5, 0.5)]);
+        let corners: Vec<[f64; 2]> = opened[0].points.iter().map(|p| [p.x, p.y]).collect();
+        assert!(opened.len() == 1 && !opened[0].closed);
+        assert_eq!(corners, [[0.5, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0], [0.5, 0.0]]);
+        let halves = cut(&[square], &[DVec2::new(0.5, -1.0), DVec2::new(0.5, 2.0)]);
+        assert_eq!(halves.iter().map(|half| half.points.len()).collect::<Vec<_>>(), [4, 4]);
+    }
+
+    #[test]
+    fn strokes_are_joined_at_their_nearest_ends() {
+        let other = stroke(&[[5.0, 1.0], [2.0, 0.0]], false);
+        let one = joined(&row(3), &other).unwrap();
+        assert_eq!(one.points.iter().map(|p| p.x).collect::<Vec<_>>(), [0.0, 1.0, 2.0, 5.0]);
+        let before = stroke(&[[-3.0, 0.0], [-1.0, 0.0]], false);
+        let one = joined(&row(2), &before).unwrap();
+        assert_eq!(one.points.iter().map(|p| p.x).collect::<Vec<_>>(), [1.0, 0.0, -1.0, -3.0]);
+        assert_eq!(joined(&row(2), &stroke(&[[0.0, 0.0]], true)), None);
+    }
+
+    #[test]
+    fn pressure_stays_with_its_place() {
+        let mut pressed = row(3);
+        pressed.points[2].pressure = Some(0.75);
+        let line = with_pressure(vec![DVec2::ZERO, DVec2::new(1.9, 0.0)], &pressed.points);
+        assert_eq!(line.iter().map(|p| p.pressure).collect::<Vec<_>>(), [Some(0.75), Some(0.75)]);
+        assert_eq!(with_pressure(vec![DVec2::ZERO], &row(3).points)[0].pressure, None);
+        let moved = transformed(&pressed, DAffine2::from_translation(DVec2::Y));
+        assert_eq!((moved.points[2].pressure, moved.points[2].y), (Some(0.75), 1.0));
     }
 
     #[test]

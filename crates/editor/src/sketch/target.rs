@@ -32,7 +32,8 @@ impl Plane {
         }
     }
 
-    fn drawn(self, place: DVec3) -> DVec2 {
+    /// The drawn point of a point in space, along the plane's normal.
+    pub(crate) fn drawn(self, place: DVec3) -> DVec2 {
         match self.view {
             Direction::Front | Direction::Free => DVec2::new(place.x, place.y),
             Direction::Side => DVec2::new(place.z, place.y),
@@ -40,7 +41,8 @@ impl Plane {
         }
     }
 
-    fn normal(self) -> DVec3 {
+    /// The axis across it.
+    pub(crate) fn normal(self) -> DVec3 {
         match self.view {
             Direction::Front | Direction::Free => DVec3::Z,
             Direction::Side => DVec3::X,

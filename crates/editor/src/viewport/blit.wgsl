@@ -1,4 +1,4 @@
-// Puts the picture of a view onto the window.
+// Puts the picture of a view onto the window. Its colours are multiplied by their alpha.
 
 @group(0) @binding(0) var picture: texture_2d<f32>;
 
@@ -31,5 +31,6 @@ fn gamma(in: Place) -> @location(0) vec4<f32> {
 @fragment
 fn linear(in: Place) -> @location(0) vec4<f32> {
     let colour = texel(in.at);
-    return vec4<f32>(pow(colour.rgb, vec3<f32>(2.2)), colour.a);
+    let plain = colour.rgb / max(colour.a, 1e-4);
+    return vec4<f32>(pow(plain, vec3<f32>(2.2)) * colour.a, colour.a);
 }

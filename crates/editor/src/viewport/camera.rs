@@ -82,6 +82,12 @@ impl ViewSize {
         self.0.max_element()
     }
 
+    /// Points from top to bottom.
+    #[expect(clippy::cast_possible_truncation, reason = "points of the screen")]
+    pub(crate) fn height(self) -> f32 {
+        self.0.y as f32
+    }
+
     fn aspect(self) -> f64 {
         self.0.x / self.0.y
     }

@@ -24,11 +24,16 @@ pub enum Shading {
     Zebra,
     /// Bulges red, hollows blue.
     Curvature,
+    /// Pale, with its outline coloured by how far it is from the sketches of the view.
+    Silhouette,
+    /// Flat faces with their edges: the mesh as it is written.
+    Facets,
 }
 
 impl Shading {
     /// All of them, in the order of the menu.
-    pub const ALL: [Self; 5] = [Self::Shaded, Self::Matcap, Self::Normals, Self::Zebra, Self::Curvature];
+    pub const ALL: [Self; 7] =
+        [Self::Shaded, Self::Matcap, Self::Normals, Self::Zebra, Self::Curvature, Self::Silhouette, Self::Facets];
 
     /// What it is called.
     pub fn name(self) -> &'static str {
@@ -38,6 +43,8 @@ impl Shading {
             Self::Normals => "Normals",
             Self::Zebra => "Zebra",
             Self::Curvature => "Curvature",
+            Self::Silhouette => "Silhouette",
+            Self::Facets => "Facets",
         }
     }
 
@@ -49,6 +56,8 @@ impl Shading {
             Self::Normals => "Coloured by direction; back faces are red",
             Self::Zebra => "Reflected stripes: where they break, the surface is not smooth",
             Self::Curvature => "Mean curvature: bulges red, hollows blue",
+            Self::Silhouette => "The outline in each view, coloured by its distance from what was sketched there",
+            Self::Facets => "Flat faces with their edges: the mesh as it is written",
         }
     }
 }
@@ -62,6 +71,8 @@ pub(crate) struct SurfaceDraw {
     pub(crate) wire: Option<[f32; 4]>,
     /// How strongly it is marked as selected, 0 to 1.
     pub(crate) mark: f32,
+    /// Whether it lies over another surface at the same place.
+    pub(crate) forward: bool,
 }
 
 /// Where lines come from.
@@ -120,7 +131,6 @@ pub(crate) struct Picture {
     /// Pixels, neither zero.
     pub(crate) size: [u32; 2],
     pub(crate) uniform: ViewUniform,
-    pub(crate) background: [f32; 3],
     /// 4 for smooth edges, 1 for speed.
     pub(crate) samples: u32,
     pub(crate) surfaces: Vec<SurfaceDraw>,
@@ -135,13 +145,13 @@ impl Picture {
         self.size.hash(&mut hasher);
         self.samples.hash(&mut hasher);
         hasher.write(bytemuck::bytes_of(&self.uniform));
-        hasher.write(bytemuck::bytes_of(&self.background));
         for surface in &self.surfaces {
             surface.drawable.id.hash(&mut hasher);
             hasher.write(bytemuck::bytes_of(&surface.colour));
             surface.wire.is_some().hash(&mut hasher);
             hasher.write(bytemuck::bytes_of(&surface.wire.unwrap_or_default()));
             surface.mark.to_bits().hash(&mut hasher);
+            surface.forward.hash(&mut hasher);
         }
         for line in &self.lines {
             match &line.source {

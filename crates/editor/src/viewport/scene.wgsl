@@ -29,6 +29,7 @@ struct Corner {
 fn surface_vertex(@location(0) place: vec3<f32>, @location(1) normal: vec3<f32>, @location(2) curvature: f32) -> Corner {
     var out: Corner;
     out.clip = view.view_projection * vec4<f32>(place, 1.0);
+    out.clip.z -= draw.numbers.y * select(1.0, 0.004, view.size_shading.w > 0.5) * out.clip.w;
     out.place = place;
     out.normal = normal;
     out.curvature = curvature;
@@ -79,6 +80,15 @@ fn surface_fragment(in: Corner, @builtin(front_facing) front: bool) -> @location
         let bulge = vec3<f32>(0.80, 0.19, 0.12);
         let hollow = vec3<f32>(0.13, 0.36, 0.72);
         colour = mix(flat, select(hollow, bulge, bent > 0.0), sqrt(abs(bent))) * (0.62 + 0.38 * seen.z);
+    } else if (mode == 5) {
+        // Pale, so that the outline and its colours stand out.
+        colour = vec3<f32>(0.44, 0.46, 0.5) * (0.55 + 0.45 * seen.z);
+    } else if (mode == 6) {
+        let across = cross(dpdx(in.place), dpdy(in.place));
+        var face = across / max(length(across), 1e-20);
+        face = face * sign(dot(face, towards));
+        let key = clamp(dot(vec3<f32>(dot(face, view.right.xyz), dot(face, view.up.xyz), dot(face, view.back.xyz)), normalize(vec3<f32>(-0.4, 0.6, 0.7))), 0.0, 1.0);
+        colour = encoded(linear(draw.colour.rgb) * (0.18 + 0.85 * key));
     } else {
         let base = linear(draw.colour.rgb) * select(vec3<f32>(0.62, 0.58, 0.66), vec3<f32>(1.0), front);
         let key = clamp(dot(seen, normalize(vec3<f32>(-0.4, 0.6, 0.7))), 0.0, 1.0);
@@ -120,7 +130,9 @@ fn line_vertex(@builtin(vertex_index) index: u32, @location(0) begin: vec3<f32>,
     var clip = mix(a, b, corner.x);
     // Joints are covered by making each piece a little longer.
     let reach = along * (corner.x * 2.0 - 1.0) * draw.numbers.x * 0.35 + across * corner.y * half_width;
-    clip = vec4<f32>(clip.xy + reach / (size * 0.5) * clip.w, clip.z - draw.numbers.y * clip.w, clip.w);
+    // Without perspective, depth is spread over a thousand times the distance of the eye.
+    let forward = draw.numbers.y * select(1.0, 0.004, view.size_shading.w > 0.5);
+    clip = vec4<f32>(clip.xy + reach / (size * 0.5) * clip.w, clip.z - forward * clip.w, clip.w);
     var out: LinePoint;
     out.clip = clip;
     if (a.w < near && b.w < near) { out.clip = vec4<f32>(0.0, 0.0, -2.0, 1.0); }

@@ -1,29 +1,31 @@
 //! Drawing, pulling and erasing strokes with the pointer. Each gesture is one step.
 
 use glam::DVec2;
-use maquette_graph::{Catalogue, Choice, Edit, Graph, Literal, LiteralKind, NodeId, NodeRecord, Stroke, WireType};
+use maquette_graph::{
+    Catalogue, Choice, Edit, Graph, Literal, LiteralKind, NodeId, NodeRecord, Stroke, StrokePoint, WireType,
+};
 
 use crate::command::{Command, GraphCommand, Message, ViewCommand};
 use crate::naming::free_name;
 use crate::panel::PanelContext;
-use crate::sketch::correct::{Outcome, erase, meaning, mirrored, pull};
+use crate::sketch::correct::{Outcome, cut, erase, meaning, mirrored, pull, with_pressure};
 use crate::sketch::smooth::smoothed;
 use crate::sketch::target::{Plane, SketchTarget, points, stroke_point};
 use crate::view_state::Tool;
 
 use super::camera::{Camera, ViewSize};
+use super::snap;
 
 /// How near the pointer must come to mean something, points.
 pub(crate) const REACH: f32 = 11.0;
-/// Distance from the middle of the body within which an end is put onto it, points.
-const SNAP: f32 = 6.0;
 
 /// What the pointer does from press to release.
 #[derive(Clone, Debug)]
 enum Gesture {
-    Draw { plane: Plane, target: Option<SketchTarget>, drawn: Vec<DVec2> },
+    Draw { plane: Plane, target: Option<SketchTarget>, drawn: Vec<DVec2>, pressures: Vec<Option<f64>> },
     Pull { base: SketchTarget, stroke: usize, point: usize, begin: DVec2 },
     Erase { base: SketchTarget, path: Vec<DVec2> },
+    Cut { base: SketchTarget, path: Vec<DVec2> },
 }
 
 /// The tool of one view.
@@ -39,17 +41,19 @@ pub(crate) struct ToolView<'a> {
 }
 
 impl ToolView<'_> {
-    fn meet(&self, plane: Plane, at: egui::Vec2) -> Option<DVec2> {
+    /// The point of a plane under a point of the view.
+    pub(crate) fn meet(&self, plane: Plane, at: egui::Vec2) -> Option<DVec2> {
         plane.meet(self.camera.ray(self.size, at))
     }
 
-    fn metres(&self, points: f32) -> f64 {
+    /// What so many points of the screen measure, metres.
+    pub(crate) fn metres(&self, points: f32) -> f64 {
         self.camera.metres_per_point(self.size) * f64::from(points)
     }
 }
 
 /// The strokes that the pointer works on: those of the active node.
-fn active_target(context: &PanelContext<'_>) -> Option<SketchTarget> {
+pub(crate) fn active_target(context: &PanelContext<'_>) -> Option<SketchTarget> {
     SketchTarget::of(context.graph(), context.view.active?)
 }
 
@@ -58,6 +62,7 @@ impl SketchTool {
     pub(crate) fn drawn(&self) -> Option<(Plane, &[DVec2])> {
         match &self.gesture {
             Some(Gesture::Draw { plane, drawn, .. }) => Some((*plane, drawn)),
+            Some(Gesture::Cut { base, path }) => Some((base.plane, path)),
             _ => None,
         }
     }
@@ -71,6 +76,9 @@ impl SketchTool {
             (Tool::Sketch, Some(name), _) => format!("draws into \"{name}\""),
             (Tool::Sketch, None, Some(_)) => "draws a new sketch".to_owned(),
             (Tool::Sketch, None, None) => "select a sketch, or draw in another view".to_owned(),
+            (Tool::Cut, Some(name), _) => format!("cuts in \"{name}\""),
+            (Tool::Transform, Some(name), _) => format!("moves, turns and scales strokes of \"{name}\""),
+            (Tool::Cut | Tool::Transform, None, _) => "click on a stroke to choose its sketch".to_owned(),
             (Tool::Erase, Some(name), _) => format!("erases in \"{name}\""),
             (Tool::Erase, None, _) => "select a sketch to erase in".to_owned(),
             _ => String::new(),
@@ -80,7 +88,7 @@ impl SketchTool {
     /// The pointer was pressed.
     pub(crate) fn press(&mut self, context: &mut PanelContext<'_>, view: &ToolView<'_>, at: egui::Vec2) {
         self.gesture = match context.view.tool {
-            Tool::Select => None,
+            Tool::Select | Tool::Transform | Tool::Lasso | Tool::Paint | Tool::Picture => None,
             Tool::Sketch => self.begin_drawing(context, view, at),
             Tool::Pull => {
                 let found = nearest_point(context.graph(), context.view.active, view, at);
@@ -89,16 +97,16 @@ impl SketchTool {
                 }
                 found
             }
-            Tool::Erase => {
+            tool @ (Tool::Erase | Tool::Cut) => {
                 let target = active_target(context);
                 let begun = target.and_then(|base| {
-                    let begin = view.meet(base.plane, at)?;
-                    Some(Gesture::Erase { base, path: vec![begin] })
+                    let path = vec![view.meet(base.plane, at)?];
+                    Some(if tool == Tool::Cut { Gesture::Cut { base, path } } else { Gesture::Erase { base, path } })
                 });
                 if begun.is_none() {
-                    context.ask(Command::Say(Message::error(
-                        "nothing to erase in: select a sketch whose plane this view shows",
-                    )));
+                    let what = if tool == Tool::Cut { "cut" } else { "erase in" };
+                    let text = format!("nothing to {what}: select a sketch whose plane this view shows");
+                    context.ask(Command::Say(Message::error(text)));
                 }
                 begun
             }
@@ -109,11 +117,16 @@ impl SketchTool {
         if let Some(target) = active_target(context)
             && let Some(begin) = view.meet(target.plane, at)
         {
-            return Some(Gesture::Draw { plane: target.plane, target: Some(target), drawn: vec![begin] });
+            let begin = snap::caught(context, view, target.plane, Some(target.node), begin).unwrap_or(begin);
+            let plane = target.plane;
+            return Some(Gesture::Draw { plane, target: Some(target), drawn: vec![begin], pressures: vec![None] });
         }
         let begun = Plane::of_view(view.camera.direction).and_then(|plane| Some((plane, view.meet(plane, at)?)));
         match begun {
-            Some((plane, begin)) => Some(Gesture::Draw { plane, target: None, drawn: vec![begin] }),
+            Some((plane, begin)) => {
+                let begin = snap::caught(context, view, plane, None, begin).unwrap_or(begin);
+                Some(Gesture::Draw { plane, target: None, drawn: vec![begin], pressures: vec![None] })
+            }
             None => {
                 context.ask(Command::Say(Message::error(
                     "there is no plane to draw in here: select a sketch, or draw in the front, side or top view",
@@ -123,16 +136,26 @@ impl SketchTool {
         }
     }
 
-    /// The pointer moved.
-    pub(crate) fn drag(&mut self, context: &mut PanelContext<'_>, view: &ToolView<'_>, at: egui::Vec2) {
+    /// The pointer moved; `pressure`, from 0 to 1, is that of a pen.
+    pub(crate) fn drag(
+        &mut self,
+        context: &mut PanelContext<'_>,
+        view: &ToolView<'_>,
+        at: egui::Vec2,
+        pressure: Option<f64>,
+    ) {
         match &mut self.gesture {
             None => {}
-            Some(Gesture::Draw { plane, drawn, .. }) => {
+            Some(Gesture::Draw { plane, drawn, pressures, .. }) => {
                 if let Some(point) = view.meet(*plane, at)
                     && drawn.last().is_none_or(|last| last.distance(point) > view.metres(1.5))
                 {
                     drawn.push(point);
+                    pressures.push(pressure);
                 }
+            }
+            Some(Gesture::Cut { base, path }) => {
+                path.extend(view.meet(base.plane, at));
             }
             Some(Gesture::Pull { base, stroke, point, begin }) => {
                 let Some(now) = view.meet(base.plane, at) else { return };
@@ -159,7 +182,18 @@ impl SketchTool {
     pub(crate) fn release(&mut self, context: &mut PanelContext<'_>, view: &ToolView<'_>) {
         match self.gesture.take() {
             None => {}
-            Some(Gesture::Draw { plane, target, drawn }) => finish(context, view, plane, target, drawn),
+            Some(Gesture::Draw { plane, target, drawn, pressures }) => {
+                finish(context, view, plane, target, drawn, &pressures);
+            }
+            Some(Gesture::Cut { base, path }) => {
+                let parts = cut(&base.strokes, &path);
+                if parts == base.strokes {
+                    context.ask(Command::Say(Message::note("no stroke was crossed: drag across one to cut it")));
+                    return;
+                }
+                let edit = Edit::set(base.node, base.input, Literal::Strokes(parts));
+                context.ask(GraphCommand::Edit { name: "cut a stroke".to_owned(), edits: vec![edit], gesture: None });
+            }
             Some(Gesture::Pull { .. } | Gesture::Erase { .. }) => context.ask(GraphCommand::EndGesture),
         }
     }
@@ -191,6 +225,7 @@ fn finish(
     plane: Plane,
     target: Option<SketchTarget>,
     mut drawn: Vec<DVec2>,
+    pressures: &[Option<f64>],
 ) {
     let reach = view.metres(REACH);
     let length: f64 = drawn.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
@@ -198,14 +233,16 @@ fn finish(
         // A click, not a stroke.
         return;
     }
-    if plane.shows_both_sides() {
-        let snap = view.metres(SNAP);
-        for end in [0, drawn.len() - 1] {
-            if drawn[end].x.abs() < snap {
-                drawn[end].x = 0.0;
-            }
-        }
+    let own = target.as_ref().map(|target| target.node);
+    let last = drawn.len() - 1;
+    if let Some(place) = snap::caught(context, view, plane, own, drawn[last]) {
+        drawn[last] = place;
     }
+    let pressed: Vec<StrokePoint> = drawn
+        .iter()
+        .zip(pressures)
+        .map(|(point, pressure)| StrokePoint { pressure: *pressure, ..stroke_point(*point) })
+        .collect();
     let closed = length > 4.0 * reach && drawn[0].distance(drawn[drawn.len() - 1]) < reach;
     let tolerance = context.settings.tolerance;
     let strokes = target.as_ref().map(|target| target.strokes.clone()).unwrap_or_default();
@@ -213,7 +250,8 @@ fn finish(
         Outcome::Instead(index, line, closed) => {
             let mut strokes = strokes;
             // What was there is smooth already; what is new must not break it.
-            strokes[index].points = line.into_iter().map(stroke_point).collect();
+            let from: Vec<StrokePoint> = strokes[index].points.iter().chain(&pressed).copied().collect();
+            strokes[index].points = with_pressure(line, &from);
             strokes[index].closed = closed;
             ("correct a stroke", strokes)
         }
@@ -224,7 +262,7 @@ fn finish(
             let line = smoothed(&drawn, closed, tolerance);
             let mut strokes = strokes;
             let name = format!("stroke {}", strokes.len() + 1);
-            let stroke = Stroke { name, closed, points: line.into_iter().map(stroke_point).collect() };
+            let stroke = Stroke { name, closed, points: with_pressure(line, &pressed) };
             if context.settings.symmetric && plane.shows_both_sides() {
                 strokes.extend([mirrored(&stroke)]);
                 let last = strokes.len() - 1;
@@ -245,7 +283,7 @@ fn finish(
 }
 
 /// The first kind that takes strokes in a plane.
-fn sketch_kind(catalogue: &Catalogue) -> Option<(String, String)> {
+pub(crate) fn sketch_kind(catalogue: &Catalogue) -> Option<(String, String)> {
     let strokes = |wire: WireType| LiteralKind::of_wire(wire) == Some(LiteralKind::Strokes);
     catalogue.kinds().find_map(|kind| {
         let input = kind.inputs().iter().find(|input| strokes(input.wire))?;

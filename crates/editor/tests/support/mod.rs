@@ -165,7 +165,7 @@ pub fn output(window: &Window, node: &str, port: &str) -> Pos2 {
 
 fn socket(window: &Window, node: &str, port: &str, output: bool) -> Pos2 {
     let id = find(window, node);
-    let place = window.state().socket_on_screen(&window.ctx, id, port, output);
+    let place = window.state().socket_on_screen(id, port, output);
     let place = place.unwrap_or_else(|| panic!("{node} shows no socket {port}"));
     let middle = window.state().node_on_screen(id).unwrap().center();
     place + vec2((place.x - middle.x).signum() * 3.0, 0.0)

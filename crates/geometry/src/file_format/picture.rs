@@ -70,6 +70,50 @@ pub enum PictureError {
 /// [`PictureError`] where the bytes are empty, neither PNG nor JPEG, damaged or cut off, too large, or without the alpha
 /// channel asked for.
 pub fn read(bytes: &[u8], channel: Channel) -> Result<Mask, PictureError> {
+    let (picture, held, name) = decoded(bytes)?;
+    let (width, height) = (picture.width(), picture.height());
+    let values = match channel {
+        Channel::Alpha if !picture.color().has_alpha() => return Err(PictureError::NoAlpha),
+        Channel::Alpha => rows(&picture, |_, alpha| alpha),
+        Channel::Dark => rows(&picture, |luma, alpha| covered(255 - luma, alpha)),
+        Channel::Light => rows(&picture, covered),
+    };
+    let unusable = |problem: String| PictureError::Malformed { format: name, problem };
+    let stored = GrayImage::from_raw(width, height, values).ok_or_else(|| unusable("too few pixels".to_owned()))?;
+    let mut upright = DynamicImage::ImageLuma8(stored);
+    upright.apply_orientation(held);
+    let (width, height) = (upright.width() as usize, upright.height() as usize);
+    Mask::new(width, height, upright.into_bytes()).map_err(|error| unusable(error.to_string()))
+}
+
+/// The pixels of a picture, upright.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Pixels {
+    /// Pixels across.
+    pub width: usize,
+    /// Pixels down.
+    pub height: usize,
+    /// Red, green, blue and alpha (not multiplied into them), 8 bits each, row by row from the upper left corner.
+    pub rgba: Vec<u8>,
+}
+
+/// The pixels of a PNG or JPEG picture to look at, upright as [`read`] has it. One with more than `most` pixels along an
+/// edge is made smaller, with its proportions.
+///
+/// # Errors
+/// As [`read`], but for the channel.
+pub fn pixels(bytes: &[u8], most: u32) -> Result<Pixels, PictureError> {
+    let (mut picture, held, _) = decoded(bytes)?;
+    picture.apply_orientation(held);
+    if picture.width().max(picture.height()) > most {
+        picture = picture.thumbnail(most, most);
+    }
+    let picture = picture.into_rgba8();
+    Ok(Pixels { width: picture.width() as usize, height: picture.height() as usize, rgba: picture.into_raw() })
+}
+
+/// A picture as it is stored, how it was held, and the name of its format.
+fn decoded(bytes: &[u8]) -> Result<(DynamicImage, image::metadata::Orientation, &'static str), PictureError> {
     if bytes.is_empty() {
         return Err(PictureError::Empty);
     }
@@ -90,19 +134,7 @@ pub fn read(bytes: &[u8], channel: Channel) -> Result<Mask, PictureError> {
     decoder.set_limits(limits).map_err(malformed)?;
     // Cameras store pictures as the sensor lies and say how they were held.
     let held = decoder.orientation().map_err(malformed)?;
-    let picture = DynamicImage::from_decoder(decoder).map_err(malformed)?;
-    let values = match channel {
-        Channel::Alpha if !picture.color().has_alpha() => return Err(PictureError::NoAlpha),
-        Channel::Alpha => rows(&picture, |_, alpha| alpha),
-        Channel::Dark => rows(&picture, |luma, alpha| covered(255 - luma, alpha)),
-        Channel::Light => rows(&picture, covered),
-    };
-    let unusable = |problem: String| PictureError::Malformed { format: name, problem };
-    let stored = GrayImage::from_raw(width, height, values).ok_or_else(|| unusable("too few pixels".to_owned()))?;
-    let mut upright = DynamicImage::ImageLuma8(stored);
-    upright.apply_orientation(held);
-    let (width, height) = (upright.width() as usize, upright.height() as usize);
-    Mask::new(width, height, upright.into_bytes()).map_err(|error| unusable(error.to_string()))
+    Ok((DynamicImage::from_decoder(decoder).map_err(malformed)?, held, name))
 }
 
 /// A value of 0 to 255 over nothing.

@@ -70,6 +70,11 @@ impl Graph {
                 inverses.reverse();
                 Edit::Several(inverses)
             }
+            Edit::Frames(frames) => Edit::Frames(self.replace_frames(frames)?),
+            Edit::References(pictures) => Edit::References(self.replace_references(pictures)?),
+            Edit::Collapse { node, collapsed } => {
+                Edit::Collapse { node: *node, collapsed: self.replace_collapsed(*node, *collapsed)? }
+            }
             Edit::GraphNotes(notes) => Edit::GraphNotes(std::mem::replace(&mut self.notes, notes.clone())),
         })
     }
@@ -137,6 +142,7 @@ impl Graph {
         if let Some(node) = self.nodes.get_mut(&id) {
             node.body = body;
             node.set_muted(record.muted);
+            node.collapsed = record.collapsed;
         }
         if let Err(error) = self.fill(catalogue, id, record) {
             // What it was linked to held nothing before, so that taking it out leaves the graph as it was.

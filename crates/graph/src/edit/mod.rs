@@ -79,6 +79,7 @@ use crate::graph::{ConnectError, GraphError, NodeId, Source};
 use crate::interface::{GraphOutput, InterfaceError};
 use crate::literal::Literal;
 use crate::parameter::Parameter;
+use crate::presentation::{Frame, PresentationError, ReferencePicture};
 
 /// One change of a graph, as a value.
 #[derive(Clone, Debug, PartialEq)]
@@ -153,6 +154,17 @@ pub enum Edit {
     },
     /// Remarks on the whole graph.
     GraphNotes(String),
+    /// Puts these frames behind the nodes, in place of those that were there.
+    Frames(Vec<Frame>),
+    /// Puts these pictures behind the sketches, in place of those that were there.
+    References(Vec<ReferencePicture>),
+    /// Lets the editor draw only a node's title and sockets, or all of it again.
+    Collapse {
+        /// The node.
+        node: NodeId,
+        /// Whether it is collapsed.
+        collapsed: bool,
+    },
     /// Lets a node pass its inputs on in place of doing its work, or do its work again.
     Mute {
         /// The node.
@@ -280,6 +292,10 @@ impl Edit {
             Self::Move { .. } => "move a node".to_owned(),
             Self::Note { .. } => "edit a note".to_owned(),
             Self::GraphNotes(_) => "edit the notes".to_owned(),
+            Self::Frames(_) => "change frames".to_owned(),
+            Self::References(_) => "change reference pictures".to_owned(),
+            Self::Collapse { collapsed: true, .. } => "collapse a node".to_owned(),
+            Self::Collapse { .. } => "expand a node".to_owned(),
             Self::Mute { muted: true, .. } => "mute a node".to_owned(),
             Self::Mute { .. } => "unmute a node".to_owned(),
             Self::UseParameter { input, parameter, .. } => format!("drive {input} by {parameter}"),
@@ -309,6 +325,9 @@ pub enum EditError {
     /// A parameter or an output of the graph does not fit.
     #[error(transparent)]
     Interface(#[from] InterfaceError),
+    /// A frame or a reference picture can't be as it is asked for.
+    #[error(transparent)]
+    Presentation(#[from] PresentationError),
     /// A body does not fit.
     #[error(transparent)]
     Body(#[from] BodyError),

@@ -26,6 +26,7 @@ pub struct NodeRecord {
     pub(super) position: Option<[f64; 2]>,
     pub(super) note: String,
     pub(super) muted: bool,
+    pub(super) collapsed: bool,
     /// The graph within; `None` for an empty one where the kind has a body.
     pub(super) body: Option<Arc<Body>>,
     pub(super) unknown_fields: Vec<(String, String)>,
@@ -48,6 +49,7 @@ impl NodeRecord {
             position: None,
             note: String::new(),
             muted: false,
+            collapsed: false,
             body: None,
             unknown_fields: Vec::new(),
             promoted: Vec::new(),
@@ -87,6 +89,13 @@ impl NodeRecord {
     #[must_use]
     pub fn muted(mut self) -> Self {
         self.muted = true;
+        self
+    }
+
+    /// Drawn with its title and sockets only.
+    #[must_use]
+    pub fn collapsed(mut self) -> Self {
+        self.collapsed = true;
         self
     }
 
@@ -131,6 +140,7 @@ impl NodeRecord {
             position: node.position,
             note: node.note,
             muted: node.muted,
+            collapsed: node.collapsed,
             body: node.body,
             unknown_fields: node.unknown_fields,
             promoted,
@@ -149,6 +159,7 @@ impl NodeRecord {
             position: node.position,
             note: node.note.clone(),
             muted: node.muted,
+            collapsed: node.collapsed,
             body: node.body.clone(),
             unknown_fields: node.unknown_fields.clone(),
             promoted: Vec::new(),

@@ -4,16 +4,16 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-use crate::body::{Body, COUNT, INDEX, Repeat, is_index};
+use crate::body::{Body, COUNT, Repeat};
 use crate::evaluate::call;
 use crate::evaluate::evaluator::announce;
 use crate::evaluate::inputs::{FileContent, Key};
 use crate::evaluate::memo::Entry;
-use crate::evaluate::place::{GraphRef, Place};
 use crate::evaluate::plan::{Found, Planner, Step};
 use crate::evaluate::run::{Ended, Led, Run, Runner, locked};
 use crate::evaluate::{EventKind, Failure};
 use crate::graph::{Graph, NodeId, Source};
+use crate::node_kind::NodeKind;
 use crate::ports::NodeError;
 use crate::report::Report;
 use crate::value::Value;
@@ -69,6 +69,12 @@ fn plain(message: impl Into<String>) -> Failure {
 
 fn at(port: &str, message: impl Into<String>) -> Failure {
     Failure { port: Some(port.to_owned()), message: message.into() }
+}
+
+/// What the inputs of a node give to the graph within it, by the names of its parameters.
+pub(crate) fn given_to(kind: &NodeKind, inputs: &[Option<Value>]) -> BTreeMap<String, Value> {
+    let inputs = kind.inputs().iter().zip(inputs);
+    inputs.filter_map(|(spec, value)| Some((spec.name.clone(), value.clone()?))).collect()
 }
 
 /// Lists are split and joined by functions of the catalogue; a panic in one is a failure of the step.
@@ -192,37 +198,19 @@ impl<'a> Runner<'a> {
         let step = composite.step();
         let graph = composite.body.shared_graph().ok_or_else(|| plain("its body is not there"))?.clone();
         let outer = &composite.run.place;
-        let name = outer.graph().node(step.node).map_or("", |node| node.name());
-        let mut given = BTreeMap::new();
-        for (spec, value) in step.kind.inputs().iter().zip(&composite.inputs) {
-            if let Some(value) = value {
-                given.insert(spec.name.clone(), value.clone());
-            }
-        }
-        let mut path = format!("{}{name}/", outer.path);
-        if composite.is_repeated() {
-            path.push_str(&format!("{index}/"));
-            if !matches!(composite.body.repeat(), Repeat::Each(_)) {
-                given.remove(COUNT);
-            }
-            if graph.parameter(INDEX).is_some_and(|parameter| is_index(parameter.spec())) {
-                given.insert(INDEX.to_owned(), Value::new(i64::try_from(index).unwrap_or(i64::MAX)));
-            }
-        }
+        let time = composite.is_repeated().then_some(index);
+        let given = given_to(&step.kind, &composite.inputs);
+        let mut place = outer.of_body(step.node, &composite.body, graph.clone(), time, given);
         if let (Repeat::Each(parameter), Some(item)) = (composite.body.repeat(), item) {
             if let Some(reason) = graph.parameter(parameter).and_then(|p| p.spec().refuses_value(&item)) {
                 return Err(at(parameter, format!("at index {index}: {reason}")));
             }
-            given.insert(parameter.clone(), item);
+            place.given.insert(parameter.clone(), item);
         }
-        given.extend(fed);
-        let folder = crate::body::within(&outer.folder, composite.body.folder());
-        let folder = if composite.body.folder().is_empty() { outer.folder.clone() } else { folder };
-        let root = Some(outer.root.unwrap_or(step.node));
+        place.given.extend(fed);
         let mut targets: Vec<NodeId> = graph.outputs().filter_map(|output| Some(output.link()?.node)).collect();
         targets.sort_unstable();
         targets.dedup();
-        let place = Place { graph: GraphRef::Body(graph), path, folder, given, root };
         let disk = self.disk(&place);
         let planner = Planner { catalogue: self.catalogue, place: &place, memo: self.memo, disk };
         let plan = planner.plan(&targets, |_| None);

@@ -70,6 +70,11 @@ impl<'a> Request<'a> {
         }
     }
 
+    /// The same for other nodes, of which nothing is examined.
+    pub(super) fn of_others(&self, targets: &[NodeId]) -> Self {
+        Self { targets: targets.to_vec(), examined: Examined::Nothing, ..self.clone() }
+    }
+
     /// Listens to what happens.
     #[must_use]
     pub fn events(self, events: &'a dyn Events) -> Self {
@@ -203,9 +208,46 @@ impl Evaluator {
             &widened
         };
         self.sync(graph, request);
-        let place = Place::of_root(graph);
-        let disk = Disk { base: &request.base, folder: "", cache: &self.files };
-        let planner = Planner { catalogue, place: &place, memo: &self.memo, disk };
+        let mut evaluation = self.evaluate_at(catalogue, Place::of_root(graph), request);
+        if !examined.is_empty() {
+            let key_of = |id: NodeId| self.slots.get(id.index()).and_then(|slot| slot.key.clone());
+            let examiner = Examiner { memo: &self.memo, cancel: &request.cancel, events: request.events };
+            examiner.examine(&mut evaluation, &examined, key_of);
+        }
+        evaluation.duration = begun.elapsed();
+        evaluation
+    }
+
+    /// As [`Evaluator::evaluate_at`], with nothing known of the place's nodes but what the memo holds, and nothing noted of
+    /// them: what is known of the graph that was evaluated last stays.
+    pub(super) fn evaluate_apart(
+        &mut self,
+        catalogue: &Catalogue,
+        place: Place<'_>,
+        request: &Request<'_>,
+    ) -> Evaluation {
+        let begun = Instant::now();
+        let fresh = vec![Slot::default(); place.graph().id_bound()];
+        let kept = std::mem::replace(&mut self.slots, fresh);
+        let mut evaluation = self.evaluate_at(catalogue, place, request);
+        self.slots = kept;
+        evaluation.duration = begun.elapsed();
+        evaluation
+    }
+
+    /// What plans are made with at a place.
+    pub(super) fn planner<'p>(
+        &'p self,
+        catalogue: &'p Catalogue,
+        place: &'p Place<'_>,
+        request: &'p Request<'_>,
+    ) -> Planner<'p> {
+        let disk = Disk { base: &request.base, folder: &place.folder, cache: &self.files };
+        Planner { catalogue, place, memo: &self.memo, disk }
+    }
+
+    fn evaluate_at(&mut self, catalogue: &Catalogue, place: Place<'_>, request: &Request<'_>) -> Evaluation {
+        let planner = self.planner(catalogue, &place, request);
         let plan = planner.plan(&request.targets, |id| self.slots.get(id.index()).and_then(|slot| slot.key.clone()));
         announce(request.events, &place, &plan);
         if let Some(first) = request.targets.first() {
@@ -228,14 +270,7 @@ impl Evaluator {
         runner.run(&run, self.pool.as_ref());
         drop(runner);
         self.files.drop_bytes();
-        let mut evaluation = self.conclude(request, &run);
-        if !examined.is_empty() {
-            let key_of = |id: NodeId| self.slots.get(id.index()).and_then(|slot| slot.key.clone());
-            let examiner = Examiner { memo: &self.memo, cancel: &request.cancel, events: request.events };
-            examiner.examine(&mut evaluation, &examined, key_of);
-        }
-        evaluation.duration = begun.elapsed();
-        evaluation
+        self.conclude(request, &run)
     }
 
     /// Marks what changed since the last evaluation, and everything behind it, as stale.

@@ -29,6 +29,7 @@ mod memo;
 mod place;
 mod plan;
 mod run;
+mod within;
 
 pub use cancel::CancelToken;
 pub use evaluation::{Evaluation, Failure, Outcome, OutcomeState};

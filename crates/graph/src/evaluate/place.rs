@@ -3,13 +3,14 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::body::within;
+use crate::body::{Body, COUNT, INDEX, Repeat, is_index, within};
 use crate::evaluate::{Event, EventKind, Events};
 use crate::graph::{Graph, Node, NodeId};
 use crate::literal::FilePath;
 use crate::value::Value;
 
 /// The graph of a run.
+#[derive(Clone)]
 pub(crate) enum GraphRef<'a> {
     /// The one that is evaluated.
     Root(&'a Graph),
@@ -18,6 +19,7 @@ pub(crate) enum GraphRef<'a> {
 }
 
 /// A graph with what it is given, and the way to it.
+#[derive(Clone)]
 pub(crate) struct Place<'a> {
     pub(crate) graph: GraphRef<'a>,
     /// Names of the nodes that lead to it, each with a slash behind; empty for the graph that is evaluated.
@@ -34,6 +36,31 @@ impl<'a> Place<'a> {
     pub(crate) fn of_root(graph: &'a Graph) -> Self {
         let given = graph.parameters().filter_map(|p| Some((p.name().to_owned(), p.hashed()?.clone()))).collect();
         Self { graph: GraphRef::Root(graph), path: String::new(), folder: String::new(), given, root: None }
+    }
+
+    /// The graph within a node, which is given the values of the node's inputs. `time` is the number of the time, where the
+    /// body is repeated; the parameters that count are then added.
+    pub(crate) fn of_body(
+        &self,
+        node: NodeId,
+        body: &Body,
+        graph: Arc<Graph>,
+        time: Option<usize>,
+        mut given: BTreeMap<String, Value>,
+    ) -> Self {
+        let name = self.graph().node(node).map_or("", Node::name);
+        let mut path = format!("{}{name}/", self.path);
+        if let Some(time) = time {
+            path.push_str(&format!("{time}/"));
+            if !matches!(body.repeat(), Repeat::Each(_)) {
+                given.remove(COUNT);
+            }
+            if graph.parameter(INDEX).is_some_and(|parameter| is_index(parameter.spec())) {
+                given.insert(INDEX.to_owned(), Value::new(i64::try_from(time).unwrap_or(i64::MAX)));
+            }
+        }
+        let folder = if body.folder().is_empty() { self.folder.clone() } else { within(&self.folder, body.folder()) };
+        Self { graph: GraphRef::Body(graph), path, folder, given, root: Some(self.root.unwrap_or(node)) }
     }
 
     pub(crate) fn graph(&self) -> &Graph {

@@ -180,7 +180,7 @@ impl Planner<'_> {
     }
 
     /// Where the values of the inputs come from. What is said here must not depend on what the memo remembers.
-    fn supplies(&self, plan: &Plan, node: &Node, kind: &NodeKind) -> Result<Vec<Supply>, Failure> {
+    pub(crate) fn supplies(&self, plan: &Plan, node: &Node, kind: &NodeKind) -> Result<Vec<Supply>, Failure> {
         let mut supplies = Vec::with_capacity(kind.inputs().len());
         for spec in kind.inputs() {
             let fail = |message: String| Failure { port: Some(spec.name.clone()), message };

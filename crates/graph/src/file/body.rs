@@ -152,13 +152,14 @@ impl<'a> Reader<'a> {
         }
     }
 
-    pub(super) fn muted(&mut self, tree: &NodeTree<'a>, node: &str, kept: &mut Kept) -> bool {
-        let Some(raw) = tree.muted else { return false };
+    /// A field of a node that is true or false; where it is neither, it goes to those that are kept as they are.
+    pub(super) fn flag(&mut self, raw: Option<&'a RawValue>, field: &str, node: &str, kept: &mut Kept) -> bool {
+        let Some(raw) = raw else { return false };
         let piece = trimmed(raw);
         ron::from_str(piece).unwrap_or_else(|_| {
-            let message = "the field \"muted\" is neither true nor false".to_owned();
-            self.error(self.offset(piece), Some(node), None, message, "write muted: true, or remove it");
-            kept.push(("muted".to_owned(), piece.to_owned()));
+            let message = format!("the field \"{field}\" is neither true nor false");
+            self.error(self.offset(piece), Some(node), None, message, &format!("write {field}: true, or remove it"));
+            kept.push((field.to_owned(), piece.to_owned()));
             false
         })
     }

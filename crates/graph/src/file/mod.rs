@@ -36,6 +36,17 @@
 //!     },
 //! ```
 //!
+//! Behind `layout` may stand what only the editor draws; a node that is `collapsed` shows its title and sockets only:
+//!
+//! ```ron
+//!     frames: [
+//!         (title: "rails", colour: (0.3, 0.4, 0.5), at: (100.0, 60.0), size: (400.0, 240.0)),
+//!     ],
+//!     references: [
+//!         (view: "front", file: "front.png", centre: (0.0, 0.9), width: 1.2, opacity: 0.5, locked: true),
+//!     ],
+//! ```
+//!
 //! Nodes stand in the order in which they were added, inputs in the order of their kind; an input at its default is
 //! not written. Numbers, integers and booleans are bare, everything else names its type: `Link("node.output")`,
 //! `Parameter("..")`, `Text("..")`, `Choice("..")`, `Vector(x, y, z)`, `Colour(r, g, b, a)`, `File("..")`, `Strokes([..])`. What this
@@ -53,6 +64,7 @@ mod link;
 mod literal_text;
 mod migrate;
 mod place;
+mod presentation;
 mod problem;
 mod project;
 mod read;

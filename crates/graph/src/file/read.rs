@@ -313,6 +313,7 @@ impl<'a> Reader<'a> {
         self.kind_versions_now(tree);
         self.outputs(tree);
         self.layout(tree);
+        self.presentation(tree);
         for (name, raw) in &tree.unknown {
             let piece = trimmed(raw);
             self.graph.unknown_fields.push((name.clone(), piece.to_owned()));
@@ -402,11 +403,13 @@ impl<'a> Reader<'a> {
             kept.push((field.clone(), piece.to_owned()));
             self.unknown_field(Some(&wanted), field, piece);
         }
-        let muted = self.muted(tree, &wanted, &mut kept);
+        let muted = self.flag(tree.muted, "muted", &wanted, &mut kept);
+        let collapsed = self.flag(tree.collapsed, "collapsed", &wanted, &mut kept);
         if let Some(node) = self.graph.nodes.get_mut(&id) {
             node.note = note;
             node.unknown_fields = kept;
             node.set_muted(muted);
+            node.collapsed = collapsed;
         }
     }
 

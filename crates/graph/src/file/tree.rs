@@ -25,6 +25,8 @@ pub(super) struct FileTree<'a> {
     pub(super) nodes: Option<Entries<'a, NodeTree<'a>>>,
     pub(super) outputs: Option<Entries<'a, &'a RawValue>>,
     pub(super) layout: Option<Entries<'a, &'a RawValue>>,
+    pub(super) frames: Option<&'a RawValue>,
+    pub(super) references: Option<&'a RawValue>,
     pub(super) unknown: Fields<'a>,
 }
 
@@ -34,6 +36,7 @@ pub(super) struct NodeTree<'a> {
     pub(super) kind: Option<&'a RawValue>,
     pub(super) note: Option<&'a RawValue>,
     pub(super) muted: Option<&'a RawValue>,
+    pub(super) collapsed: Option<&'a RawValue>,
     pub(super) inputs: Option<Entries<'a, &'a RawValue>>,
     pub(super) each: Option<&'a RawValue>,
     pub(super) feed_back: Option<&'a RawValue>,
@@ -128,6 +131,8 @@ impl<'de> Visitor<'de> for FileSeed<'_> {
                 "parameters" => once(&mut tree.parameters, &name, &mut map, EntriesSeed(meter, Port(meter)))?,
                 "nodes" => once(&mut tree.nodes, &name, &mut map, EntriesSeed(meter, NodeSeed(meter)))?,
                 "outputs" => once(&mut tree.outputs, &name, &mut map, EntriesSeed(meter, Port(meter)))?,
+                "frames" => once(&mut tree.frames, &name, &mut map, Piece(meter))?,
+                "references" => once(&mut tree.references, &name, &mut map, Piece(meter))?,
                 "layout" => once(&mut tree.layout, &name, &mut map, EntriesSeed(meter, Piece(meter)))?,
                 _ => unknown(&mut tree.unknown, name, &mut map, meter)?,
             }
@@ -188,6 +193,7 @@ impl<'de> Visitor<'de> for NodeSeed<'_> {
                 "kind" => once(&mut tree.kind, &name, &mut map, Piece(meter))?,
                 "note" => once(&mut tree.note, &name, &mut map, Piece(meter))?,
                 "muted" => once(&mut tree.muted, &name, &mut map, Piece(meter))?,
+                "collapsed" => once(&mut tree.collapsed, &name, &mut map, Piece(meter))?,
                 "inputs" => {
                     meter.take(FIRST_INPUT);
                     once(&mut tree.inputs, &name, &mut map, EntriesSeed(meter, Piece(meter)))?;

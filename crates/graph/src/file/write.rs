@@ -63,11 +63,49 @@ fn write_graph(out: &mut String, depth: usize, graph: &Graph, embedded: bool) {
         }
         line(out, depth, "},");
     }
+    write_presentation(out, depth, graph);
     for (name, raw) in &graph.unknown_fields {
-        let replaced = (name == "version" && !embedded) || (name == "notes" && !graph.notes.is_empty());
+        let replaced = match name.as_str() {
+            "version" => !embedded,
+            "notes" => !graph.notes.is_empty(),
+            "frames" => !graph.frames().is_empty(),
+            "references" => !graph.references().is_empty(),
+            _ => false,
+        };
         if !replaced {
             line(out, depth, &format!("{}: {raw},", identifier(name)));
         }
+    }
+}
+
+/// What only those who look at the graph ask for.
+fn write_presentation(out: &mut String, depth: usize, graph: &Graph) {
+    if !graph.frames().is_empty() {
+        line(out, depth, "frames: [");
+        for frame in graph.frames() {
+            let [colour, at, size] = [&frame.colour[..], &frame.at, &frame.size].map(numbers);
+            let title = quoted(&frame.title);
+            line(out, depth + 1, &format!("(title: {title}, colour: ({colour}), at: ({at}), size: ({size})),"));
+        }
+        line(out, depth, "],");
+    }
+    if !graph.references().is_empty() {
+        line(out, depth, "references: [");
+        for picture in graph.references() {
+            let flag = |name: &str, on: bool| if on { format!(", {name}: true") } else { String::new() };
+            let text = format!(
+                "(view: {}, file: {}, centre: ({}), width: {}, opacity: {}{}{}),",
+                quoted(&picture.view),
+                quoted(&picture.file),
+                numbers(&picture.centre),
+                number(picture.width),
+                number(picture.opacity),
+                flag("locked", picture.locked),
+                flag("hidden", picture.hidden),
+            );
+            line(out, depth + 1, &text);
+        }
+        line(out, depth, "],");
     }
 }
 
@@ -200,6 +238,9 @@ fn write_node(out: &mut String, depth: usize, graph: &Graph, node: &Node) {
     if node.is_muted() {
         line(out, depth + 1, "muted: true,");
     }
+    if node.is_collapsed() {
+        line(out, depth + 1, "collapsed: true,");
+    }
     let declared = node.kind().map(|kind| kind.inputs()).unwrap_or_default();
     let place = |name: &str| declared.iter().position(|spec| spec.name == name).unwrap_or(usize::MAX);
     let mut sources: Vec<_> = node.sources().collect();
@@ -218,6 +259,7 @@ fn write_node(out: &mut String, depth: usize, graph: &Graph, node: &Node) {
     for (name, raw) in &node.unknown_fields {
         let replaced = (name == "note" && !node.note().is_empty())
             || (name == "muted" && node.is_muted())
+            || (name == "collapsed" && node.is_collapsed())
             || is_of_body(node, name);
         if !replaced {
             line(out, depth + 1, &format!("{}: {raw},", identifier(name)));

@@ -1,7 +1,7 @@
 //! **Select points**: vertices picked by hand, remembered by where they are.
 
 use glam::DVec3;
-use maquette_geometry::mesh::select::{Picked, SelectError, by_points};
+use maquette_geometry::mesh::select::{Picked, SelectError, Selection, by_points};
 use maquette_graph::{AtPort, NodeError, NodeKind, Unit};
 
 use crate::selecting::SelectionOutput;
@@ -45,10 +45,15 @@ pub(crate) fn kind() -> NodeKind {
     node.evaluate(move |ports| {
         let body = &ports.read(mesh).0;
         let places = parse(ports.read(points).as_str()).at(points)?;
-        let found = match by_points(body, &places, ports.value(tolerance), &ports.progress_callback()) {
-            Err(error @ SelectError::NoPolygons) => Err(error).at(mesh),
-            found => found.at(points),
-        }?;
+        let found = if places.is_empty() && body.polygon_count() > 0 {
+            // Before the first one is picked, nothing is selected, and what is selected of is known.
+            Some((Selection::new(vec![0.0; body.positions().len()]).at(mesh)?, Vec::new()))
+        } else {
+            match by_points(body, &places, ports.value(tolerance), &ports.progress_callback()) {
+                Err(error @ SelectError::NoPolygons) => Err(error).at(mesh),
+                found => found.at(points),
+            }?
+        };
         let Some((weights, picked)) = found else { return Err(NodeError::Cancelled) };
         for (index, (place, one)) in places.iter().zip(&picked).enumerate().filter(|(_, (_, one))| !one.found) {
             ports.warn(format!(

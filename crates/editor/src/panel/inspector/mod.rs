@@ -1,6 +1,8 @@
 //! The inspector: the active node's name, note and inputs, each by its kind. It is made of what kinds declare about
 //! themselves.
 
+mod order;
+mod references;
 mod strokes;
 mod value;
 
@@ -37,7 +39,10 @@ impl Inspector {
                     }
                     self.node(ui, context, id, node);
                 }
-                None => graph(ui, context),
+                None => {
+                    graph(ui, context);
+                    references::show(ui, context);
+                }
             }
         });
     }
@@ -120,7 +125,7 @@ impl Inspector {
 
 /// What the last evaluation said of a node.
 fn outcome(ui: &mut Ui, context: &PanelContext<'_>, id: NodeId) {
-    let Some(outcome) = context.results.outcome(id).filter(|_| context.is_outermost()) else { return };
+    let Some(outcome) = context.outcome(id) else { return };
     match &outcome.state {
         OutcomeState::Failed(failure) => {
             ui.label(RichText::new(failure.to_string()).color(ui.visuals().error_fg_color));
@@ -202,6 +207,9 @@ fn row(ui: &mut Ui, context: &mut PanelContext<'_>, id: NodeId, node: &Node, inp
                 ui.label(RichText::new(text).color(ui.visuals().warn_fg_color));
             }
         },
+    }
+    if order::is_order(input) {
+        order::show(ui, context, id, input, source);
     }
     ui.add_space(4.0);
 }

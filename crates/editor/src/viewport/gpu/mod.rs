@@ -142,7 +142,6 @@ impl Gpu {
             Some(multisampled) => (multisampled, Some(&target.picture)),
             None => (&target.picture, None),
         };
-        let [r, g, b] = picture.background.map(f64::from);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("view"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
@@ -150,7 +149,8 @@ impl Gpu {
                 depth_slice: None,
                 resolve_target,
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color { r, g, b, a: 1.0 }),
+                    // What is behind the scene is the window's: its colour, and reference pictures.
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
                     store: wgpu::StoreOp::Store,
                 },
             })],
@@ -197,7 +197,8 @@ fn calls<'a>(
     for surface in &picture.surfaces {
         let Some(there) = uploaded.get(&surface.drawable.id) else { continue };
         let scale = surface.drawable.surface.as_ref().map_or(1.0, |surface| surface.curvature_scale);
-        let numbers = [0.0, 0.0, scale, surface.mark];
+        let forward = if surface.forward { 0.5 * WIRE_FORWARD } else { 0.0 };
+        let numbers = [0.0, forward, scale, surface.mark];
         calls.push((DrawUniform { colour: surface.colour, numbers }, Call::Surface(there)));
         if let (Some(colour), Some(buffer)) = (surface.wire, there.surface.as_ref().and_then(|s| s.wire.as_ref())) {
             let uniform = DrawUniform { colour, numbers: [1.0, WIRE_FORWARD, 0.0, 0.0] };

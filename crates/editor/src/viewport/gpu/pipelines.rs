@@ -146,7 +146,11 @@ impl Blit {
                 module: &module,
                 entry_point: Some(if window.is_srgb() { "linear" } else { "gamma" }),
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(window.into())],
+                targets: &[Some(wgpu::ColorTargetState {
+                    format: window,
+                    blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
             }),
             multiview_mask: None,
             cache: None,
