@@ -9,7 +9,7 @@
 mod graphs;
 
 use graphs::Saved;
-use maquette_graph::{Evaluator, EvaluatorOptions, EventLog, Literal, Source};
+use maquette_graph::{Evaluator, EvaluatorOptions, Literal, Source};
 
 fn moved_first_point(saved: &Saved, node: &str) -> Literal {
     let source = saved.graph.node(saved.node(node)).unwrap().source("strokes").cloned();
@@ -116,15 +116,6 @@ fn results_are_the_same_for_every_run_and_any_number_of_threads() {
 fn in_the_legs_only_what_a_change_reaches_runs_again() {
     let mut saved = Saved::load("legs");
     let mut evaluator = Evaluator::default();
-    let log = maquette_graph::EventLog::default();
-    let ran = |saved: &Saved, evaluator: &mut Evaluator| {
-        let results = saved.graph.results();
-        let request = Saved::request(&results).events(&log);
-        evaluator.evaluate(&saved.catalogue, &saved.graph, &request);
-        let mut ran = log.take_ran();
-        ran.sort();
-        ran
-    };
     let first = saved.ran(&mut evaluator);
     for name in ["contours/0/calm", "contours/3/even", "left/grown", "right/surface"] {
         assert!(first.contains(&name.to_owned()), "{first:?}");

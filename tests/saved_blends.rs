@@ -17,7 +17,7 @@ use maquette_geometry::curve::{Curve, closest};
 use maquette_geometry::mesh::{Mesh, MeshCheck, MeshDistance, check, measure};
 use maquette_geometry::sections::Sections;
 use maquette_geometry::surface::ripple;
-use maquette_graph::{Cell, Evaluation, Evaluator, OutcomeState, Report, file};
+use maquette_graph::{Cell, Evaluation, Evaluator, file};
 use maquette_nodes::wire;
 
 /// One sound, closed shell that faces outwards.
@@ -154,7 +154,7 @@ fn the_same_part_joins_legs_and_a_neck() {
     let evaluation = saved.evaluate(&mut Evaluator::default(), &["out", "with left", "with legs", "whole"]);
     for node in ["with left", "with legs", "whole"] {
         sound(node, saved.mesh(&evaluation, node, "mesh"));
-        smooth_seams(&saved, &evaluation, [node, "joined/"], 2.0, 0.15);
+        smooth_seams(&saved, &evaluation, [node, "joined/"], 2.0, 0.1);
         let blend = saved.sections(&evaluation, node, "rings");
         assert!(ripple(blend).sign_changes <= 3, "{node}: {:?}", ripple(blend));
     }
@@ -167,15 +167,15 @@ fn a_patch_closes_an_opening_and_continues_the_hull_on_all_sides() {
     let evaluation = saved.evaluate(&mut Evaluator::default(), &targets);
     let whole = saved.mesh(&evaluation, "joined", "mesh");
     sound("patch", whole);
-    // Below 0.1 degrees along the sides; the normals of both meshes differ a little more beside the corners.
-    smooth_seams(&saved, &evaluation, ["joined", ""], 1.0, 0.3);
+    // Along all sides, the corners between them included.
+    smooth_seams(&saved, &evaluation, ["joined", ""], 1.0, 0.1);
     // Drawn curves are reproduced: the ridge, the sides.
     let patch = saved.sections(&evaluation, "patch", "sections");
     let ridge = &evaluation.value::<wire::Curves>(saved.node("even ridge"), "curves").unwrap().0[0];
     let distance = MeshDistance::new(whole).unwrap();
     let off = ridge.points().iter().map(|p| distance.nearest(*p).distance).fold(0.0, f64::max);
     // The ridge leaves the hull by a few degrees and is bent to leave it smoothly: 2.4 mm where it is highest.
-    assert!(off < 3e-3, "{off}");
+    assert!(off < 2.5e-3, "{off}");
     let sides = saved.borders(&evaluation, "sides", "sides");
     assert_eq!(sides.len(), 4);
     let last = patch.len() - 1;

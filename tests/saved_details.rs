@@ -17,9 +17,8 @@ use graphs::{Saved, extent};
 use maquette_geometry::border::Border;
 use maquette_geometry::curve::{ArcLength, Curve, closest};
 use maquette_geometry::mesh::{Mesh, MeshDistance, check, measure};
-use maquette_geometry::sections::Sections;
 use maquette_geometry::surface::ripple;
-use maquette_graph::{Evaluation, Evaluator, EventLog, Literal, OutcomeState};
+use maquette_graph::{Evaluation, Evaluator, EventLog, Literal};
 use maquette_nodes::wire;
 
 /// Everything that must hold for any of these surfaces: one sound sheet with so many borders, that does not cross

@@ -16,7 +16,7 @@ use maquette_geometry::curve::{Curve, closest};
 use maquette_geometry::mesh::{Mesh, MeshDistance, check, measure};
 use maquette_geometry::sections::Sections;
 use maquette_geometry::surface::ripple;
-use maquette_graph::{Evaluation, Evaluator, WireType};
+use maquette_graph::{Evaluator, WireType};
 use maquette_nodes::wire;
 
 /// Largest distance of a curve's points from a mesh, metres.
@@ -355,7 +355,7 @@ fn the_legs_are_the_leg_twice_as_mirror_images() {
     // What is done curve by curve is what is done to all at once: the graph of one leg does that.
     let one = Saved::load("leg");
     let evaluation_of_one = one.evaluate(&mut evaluator, &["even contours", "surface"]);
-    let all = curves(&one, &evaluation_of_one, "even contours", "curves");
+    let all = one.curves(&evaluation_of_one, "even contours", "curves");
     assert_eq!(saved.curves(&evaluation, "contours", "contours"), all);
-    assert_eq!(mesh(&one, &evaluation_of_one, "surface"), left);
+    assert_eq!(one.mesh(&evaluation_of_one, "surface", "mesh"), left);
 }

@@ -11,7 +11,7 @@ mod graphs;
 use glam::DVec3;
 use graphs::Saved;
 use maquette_geometry::mesh::{Mesh, MeshDistance, check};
-use maquette_graph::{Evaluation, Evaluator, OutcomeState, Report};
+use maquette_graph::{Evaluation, Evaluator};
 use maquette_nodes::wire;
 
 fn sections<'a>(saved: &Saved, evaluation: &'a Evaluation, node: &str) -> &'a [wire::NamedSection] {

@@ -12,7 +12,7 @@ use glam::DVec3;
 use graphs::{Saved, extent};
 use maquette_geometry::curve::closest;
 use maquette_geometry::mesh::{Mesh, check, measure};
-use maquette_graph::{Evaluation, Evaluator, OutcomeState};
+use maquette_graph::{Evaluation, Evaluator};
 use maquette_nodes::wire;
 
 /// The mesh of a node, which must be one sound, closed shell that faces outwards.

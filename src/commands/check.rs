@@ -6,7 +6,7 @@ use maquette_graph::file::Severity;
 use maquette_graph::{Catalogue, Evaluator, OutcomeState, Parameter, Request, Unit};
 
 use super::diff::spelled_literal;
-use super::graph_file::GraphFile;
+use super::graph_file::{GraphFile, each};
 use super::project::ProjectArguments;
 use super::{Ended, console};
 
@@ -28,20 +28,12 @@ pub struct Arguments {
 
 /// Carries out the command.
 pub fn check(arguments: &Arguments) -> Ended {
-    let catalogue = match maquette_nodes::catalogue() {
-        Ok(catalogue) => catalogue,
-        Err(error) => {
-            console::error(error.to_string());
-            return Ended::Wrong;
-        }
-    };
-    let mut ended = Ended::Done;
-    for path in &arguments.graphs {
-        if !check_one(&catalogue, path, arguments) {
-            ended = Ended::Wrong;
-        }
-    }
-    ended
+    each(
+        &arguments.graphs,
+        |catalogue, path| {
+            if check_one(catalogue, path, arguments) { Ended::Done } else { Ended::Wrong }
+        },
+    )
 }
 
 /// Whether the graph is sound.

@@ -6,7 +6,7 @@ use maquette_graph::Catalogue;
 use maquette_graph::file::{self, Problem, Severity};
 
 use super::comments::comments;
-use super::graph_file::GraphFile;
+use super::graph_file::{GraphFile, each};
 use super::project::ProjectArguments;
 use super::{Ended, console, write};
 
@@ -37,22 +37,7 @@ pub struct Arguments {
 
 /// Carries out the command.
 pub fn fmt(arguments: &Arguments) -> Ended {
-    let catalogue = match maquette_nodes::catalogue() {
-        Ok(catalogue) => catalogue,
-        Err(error) => {
-            console::error(error.to_string());
-            return Ended::Wrong;
-        }
-    };
-    // The worst of all files; not written (3) is worse than wrong (2).
-    let mut worst = Ended::Done;
-    for path in &arguments.graphs {
-        let ended = one(&catalogue, arguments, path);
-        if ended as u8 > worst as u8 {
-            worst = ended;
-        }
-    }
-    worst
+    each(&arguments.graphs, |catalogue, path| one(catalogue, arguments, path))
 }
 
 fn one(catalogue: &Catalogue, arguments: &Arguments, path: &Path) -> Ended {

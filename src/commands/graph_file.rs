@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use maquette_graph::file::{self, Includes, Loaded, Problem, Project, Severity};
 use maquette_graph::{Catalogue, Graph, Literal, NodeId, Source};
 
-use super::overrides;
 use super::project::ProjectArguments;
+use super::{Ended, console, overrides};
 
 /// A graph with the file it came from.
 pub(super) struct GraphFile {
@@ -24,6 +24,18 @@ pub(super) struct GraphFile {
 
 /// Why a graph could not be opened: what was said about it, for `--json`.
 pub(super) type Refused = Vec<String>;
+
+/// Carries out a command for each of several graphs. It ends as the worst of them did: not written is worse than wrong.
+pub(super) fn each(paths: &[PathBuf], one: impl Fn(&Catalogue, &Path) -> Ended) -> Ended {
+    let catalogue = match maquette_nodes::catalogue() {
+        Ok(catalogue) => catalogue,
+        Err(error) => {
+            console::error(error.to_string());
+            return Ended::Wrong;
+        }
+    };
+    paths.iter().map(|path| one(&catalogue, path)).max_by_key(|ended| *ended as u8).unwrap_or(Ended::Done)
+}
 
 impl GraphFile {
     /// Reads a graph; what is wrong with it is in its problems.

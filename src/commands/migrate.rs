@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use maquette_graph::Catalogue;
 use maquette_graph::file;
 
-use super::graph_file::GraphFile;
+use super::graph_file::{GraphFile, each};
 use super::project::ProjectArguments;
 use super::{Ended, console, write};
 
@@ -28,21 +28,7 @@ pub struct Arguments {
 
 /// Carries out the command.
 pub fn migrate(arguments: &Arguments) -> Ended {
-    let catalogue = match maquette_nodes::catalogue() {
-        Ok(catalogue) => catalogue,
-        Err(error) => {
-            console::error(error.to_string());
-            return Ended::Wrong;
-        }
-    };
-    let mut worst = Ended::Done;
-    for path in &arguments.graphs {
-        let ended = one(&catalogue, arguments, path);
-        if ended as u8 > worst as u8 {
-            worst = ended;
-        }
-    }
-    worst
+    each(&arguments.graphs, |catalogue, path| one(catalogue, arguments, path))
 }
 
 fn one(catalogue: &Catalogue, arguments: &Arguments, path: &Path) -> Ended {

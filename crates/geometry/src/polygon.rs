@@ -14,14 +14,61 @@ pub(crate) fn signed_area(corners: &[DVec2]) -> f64 {
 /// Whether a point lies inside a polygon, by the even-odd rule: of one that crosses itself, a region that is run around
 /// twice is outside. A point on a side lies on either side of it.
 pub(crate) fn encloses(corners: &[DVec2], point: DVec2) -> bool {
-    let mut inside = false;
-    for (k, a) in corners.iter().enumerate() {
-        let b = corners[(k + 1) % corners.len()];
-        if (a.y > point.y) != (b.y > point.y) && point.x < a.x + (b.x - a.x) * (point.y - a.y) / (b.y - a.y) {
-            inside = !inside;
+    let met = |k: &usize| leaves_on_the_right([corners[*k], corners[(*k + 1) % corners.len()]], point);
+    (0..corners.len()).filter(met).count() % 2 == 1
+}
+
+/// Whether a side is met by what leads from a point to the right.
+fn leaves_on_the_right([a, b]: [DVec2; 2], point: DVec2) -> bool {
+    (a.y > point.y) != (b.y > point.y) && point.x < a.x + (b.x - a.x) * (point.y - a.y) / (b.y - a.y)
+}
+
+/// Most slabs into which a polygon is parted: of one that goes up and down, every side is in all of them.
+const SLABS: usize = 64;
+
+/// A polygon that is asked often what it encloses: its sides by height.
+pub(crate) struct Inside {
+    low: DVec2,
+    high: DVec2,
+    sides: Vec<[DVec2; 2]>,
+    /// Of slabs of equal height, one over the other, the sides that reach into each.
+    slabs: Vec<Vec<u32>>,
+}
+
+impl Inside {
+    pub(crate) fn new(corners: &[DVec2]) -> Self {
+        let (low, high) =
+            corners.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
+        let sides: Vec<_> = (0..corners.len()).map(|k| [corners[k], corners[(k + 1) % corners.len()]]).collect();
+        let mut inside = Self { low, high, slabs: vec![Vec::new(); SLABS.min(sides.len())], sides };
+        for (side, [a, b]) in inside.sides.iter().enumerate() {
+            for slab in inside.slab(a.y.min(b.y))..=inside.slab(a.y.max(b.y)) {
+                inside.slabs[slab].push(side as u32);
+            }
         }
+        inside
     }
-    inside
+
+    /// The corners of the box around it.
+    pub(crate) fn bounds(&self) -> (DVec2, DVec2) {
+        (self.low, self.high)
+    }
+
+    /// The slab at a height: of two heights, the higher one is never in the lower slab.
+    fn slab(&self, y: f64) -> usize {
+        let share = (y - self.low.y) / (self.high.y - self.low.y);
+        // Nothing that is not a number comes out of it: it becomes 0.
+        ((share * self.slabs.len() as f64) as usize).min(self.slabs.len() - 1)
+    }
+
+    /// As [`encloses`].
+    pub(crate) fn encloses(&self, point: DVec2) -> bool {
+        if !(point.cmpge(self.low).all() && point.cmple(self.high).all()) {
+            return false;
+        }
+        let near = self.slabs[self.slab(point.y)].iter();
+        near.filter(|side| leaves_on_the_right(self.sides[**side as usize], point)).count() % 2 == 1
+    }
 }
 
 #[cfg(test)]
@@ -30,6 +77,29 @@ mod tests {
 
     fn polygon(corners: &[[f64; 2]]) -> Vec<DVec2> {
         corners.iter().map(|corner| DVec2::from(*corner)).collect()
+    }
+
+    #[test]
+    fn sides_by_height_enclose_the_same_points() {
+        // A star that crosses itself, a flat polygon, none.
+        let star: Vec<DVec2> =
+            (0..41).map(|k| DVec2::from_angle(2.4 * f64::from(k)) * (1.0 + 0.01 * f64::from(k % 7))).collect();
+        let flat = polygon(&[[0.0, 0.5], [1.0, 0.5], [0.5, 0.5]]);
+        for corners in [star, flat, polygon(&[])] {
+            let inside = Inside::new(&corners);
+            let mut within = 0;
+            for i in 0..=120 {
+                for j in 0..=120 {
+                    let at = DVec2::new(f64::from(i) / 40.0 - 1.5, f64::from(j) / 40.0 - 1.5);
+                    assert_eq!(inside.encloses(at), encloses(&corners, at), "{at}");
+                    within += usize::from(inside.encloses(at));
+                }
+            }
+            assert_eq!(within > 1000, corners.len() == 41, "{within}");
+            for corner in &corners {
+                assert_eq!(inside.encloses(*corner), encloses(&corners, *corner), "{corner}");
+            }
+        }
     }
 
     #[test]

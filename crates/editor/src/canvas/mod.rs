@@ -224,7 +224,10 @@ impl Canvas {
         if graph.nodes().len() == 0 {
             let text = "empty: press Tab to add a node, or draw in a view with the Sketch tool";
             let font = egui::FontId::proportional(14.0);
-            ui.painter().text(rect.center(), egui::Align2::CENTER_CENTER, text, font, ui.visuals().weak_text_color());
+            // The widget's own layer lies over that of the panel.
+            let layer = egui::LayerId::new(egui::Order::Middle, ui.id().with("empty"));
+            let painter = ui.ctx().layer_painter(layer).with_clip_rect(rect);
+            painter.text(rect.center(), egui::Align2::CENTER_CENTER, text, font, ui.visuals().weak_text_color());
         }
     }
 
@@ -233,7 +236,12 @@ impl Canvas {
         if context.is_outermost() {
             return;
         }
-        ui.horizontal(|ui| {
+        let height = ui.spacing().interact_size.y + 6.0;
+        let bar = Rect::from_min_size(ui.available_rect_before_wrap().min, egui::vec2(ui.available_width(), height));
+        ui.painter().rect_filled(bar, 0.0, ui.visuals().panel_fill);
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        ui.allocate_ui_with_layout(bar.size(), layout, |ui| {
+            ui.add_space(6.0);
             let mut asked = None;
             if ui.button(context.document.name()).on_hover_text("Back to the whole graph").clicked() {
                 asked = Some(0);

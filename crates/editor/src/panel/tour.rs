@@ -129,7 +129,7 @@ impl Tour {
 
     /// Shows the step beside what it speaks of, which it frames.
     pub(crate) fn show(self, context: &egui::Context, rects: &[Rect]) -> Option<Asked> {
-        let Some(first) = rects.first() else { return None };
+        let first = rects.first()?;
         let accent = context.global_style().visuals.selection.stroke.color;
         let painter = context.layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::new("tour frames")));
         for rect in rects {

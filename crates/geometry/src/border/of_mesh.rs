@@ -4,8 +4,8 @@ use glam::DVec3;
 
 use super::{Border, BorderError};
 use crate::curve::Curve;
+use crate::mesh::Mesh;
 use crate::mesh::measure::polygon_normal;
-use crate::mesh::{Mesh, Topology};
 
 /// The boundary loops of a mesh, each run so that a face put into it would face as the mesh around it does.
 ///
@@ -16,7 +16,7 @@ use crate::mesh::{Mesh, Topology};
 /// # Errors
 /// [`BorderError`] at a vertex without a direction: polygons without area around it.
 pub fn boundaries(mesh: &Mesh) -> Result<Vec<Border>, BorderError> {
-    let loops = Topology::new(mesh).boundary_loops();
+    let loops = mesh.boundary_loops();
     if loops.is_empty() {
         return Ok(Vec::new());
     }
@@ -28,7 +28,7 @@ pub fn boundaries(mesh: &Mesh) -> Result<Vec<Border>, BorderError> {
     Ok(borders)
 }
 
-/// The border of a mesh along one of its [boundary loops](Topology::boundary_loops), begun at its first vertex; as
+/// The border of a mesh along one of its [boundary loops](Mesh::boundary_loops), begun at its first vertex; as
 /// [`boundaries`] gives it.
 ///
 /// # Errors

@@ -43,7 +43,7 @@ pub enum SplitBorderError {
 }
 
 /// The sides of a closed border between `corners`, in its order from the first corner: each `count` (2 or more) points at
-/// equal distances on a natural C2 spline through the border's points, with directions square to it and to the surface's
+/// equal distances on a C2 spline through the border's points, which leaves the corners as the parabolas there do, with directions square to it and to the surface's
 /// normals, which another spline goes through.
 ///
 /// A corner is where it is given, brought onto the round surface that the border's points and normals on both sides of it
@@ -103,8 +103,13 @@ pub fn split(border: &Border, corners: &[DVec3], count: usize) -> Result<Vec<Bor
     let corners: Vec<(DVec3, DVec3)> = (0..cuts.len())
         .map(|corner| {
             let (before, after) = (&sides[(corner + cuts.len() - 1) % cuts.len()], &sides[corner]);
-            let beside = [[before[before.len() - 1], before[before.len() - 2]], [after[0], after[1]]];
-            round_corner(cuts[corner].1, beside.map(|two| two.map(|k| (point(k), normal(k)))))
+            let told = |k: &usize| (point(*k), normal(*k));
+            let apart = BESIDE * spacing;
+            let beside = [
+                apart_from_one_another(before.iter().rev().map(told), apart),
+                apart_from_one_another(after.iter().map(told), apart),
+            ];
+            round_corner(cuts[corner].1, &beside)
         })
         .collect();
     let made = sides.iter().enumerate().map(|(side, inner)| {
@@ -116,26 +121,62 @@ pub fn split(border: &Border, corners: &[DVec3], count: usize) -> Result<Vec<Bor
     made.collect()
 }
 
-/// A corner and its normal, from two points with normals on each side of it, the nearer first. The normal goes on as it
-/// changes along both sides; chords of a round surface are square to the mean of the normals at their ends.
-fn round_corner(at: DVec3, beside: [[(DVec3, DVec3); 2]; 2]) -> (DVec3, DVec3) {
-    let sum: DVec3 = beside
+/// The first three of a side's points with normals that are so far from one another, or two of its first where the side is
+/// too short for three.
+fn apart_from_one_another(side: impl Iterator<Item = (DVec3, DVec3)>, apart: f64) -> Vec<(DVec3, DVec3)> {
+    let mut near: Vec<(DVec3, DVec3)> = Vec::with_capacity(3);
+    let mut next = None;
+    for (point, normal) in side {
+        match near.last() {
+            Some((last, _)) if last.distance(point) < apart => next = next.or(Some((point, normal))),
+            _ => near.push((point, normal)),
+        }
+        if near.len() == 3 {
+            break;
+        }
+    }
+    if near.len() < 2 {
+        near.extend(next);
+    }
+    near
+}
+
+/// A corner and its normal, from points with normals on each side of it, the nearest first. The normal goes on as it
+/// changes along both sides, by parabolas where there are three; chords of a round surface are square to the mean of the
+/// normals at their ends.
+fn round_corner(at: DVec3, beside: &[Vec<(DVec3, DVec3)>; 2]) -> (DVec3, DVec3) {
+    let normal = beside.iter().map(|side| extrapolated(at, side)).sum::<DVec3>().normalize_or_zero();
+    let below = |side: &[(DVec3, DVec3)]| {
+        side.first().map_or(0.0, |(point, other)| (*point - at).dot((normal + *other).normalize_or_zero()))
+    };
+    (at + normal * (0.5 * (below(&beside[0]) + below(&beside[1]))), normal)
+}
+
+/// The normal at a place beyond the first of some points with normals, by the polynomial of the distance along them.
+fn extrapolated(at: DVec3, side: &[(DVec3, DVec3)]) -> DVec3 {
+    let mut before = at;
+    let mut distance = 0.0;
+    let places: Vec<f64> = side
         .iter()
-        .map(|[near, far]| {
-            near.1 + (near.1 - far.1) * (at.distance(near.0) / near.0.distance(far.0).max(f64::MIN_POSITIVE))
+        .map(|(point, _)| {
+            distance += before.distance(*point);
+            before = *point;
+            distance.max(f64::MIN_POSITIVE)
         })
-        .sum();
-    let normal = sum.normalize_or_zero();
-    let below = |(point, other): (DVec3, DVec3)| (point - at).dot((normal + other).normalize_or_zero());
-    (at + normal * (0.5 * (below(beside[0][0]) + below(beside[1][0]))), normal)
+        .collect();
+    // Lagrange's weights at distance 0.
+    let weight = |k: usize| -> f64 {
+        (0..places.len()).filter(|other| *other != k).map(|other| places[other] / (places[other] - places[k])).product()
+    };
+    side.iter().enumerate().map(|(k, (_, normal))| *normal * weight(k)).sum()
 }
 
 fn one_side(name: String, all: &[(DVec3, DVec3)], count: usize) -> Result<Border, SplitBorderError> {
     let (points, normals): (Vec<DVec3>, Vec<DVec3>) = all.iter().copied().unzip();
     let parameters = chord_parameters(&points, false);
     let (start, end) = (points[0], points[points.len() - 1]);
-    let line = SplineLength::of(CubicSpline::natural(parameters.clone(), points)?);
-    let normals = CubicSpline::natural(parameters, normals)?;
+    let line = SplineLength::of(CubicSpline::parabolic(parameters.clone(), points)?);
+    let normals = CubicSpline::parabolic(parameters, normals)?;
     let stations: Vec<f64> = (0..count).map(|k| line.length() * k as f64 / (count - 1) as f64).collect();
     let mut points: Vec<DVec3> = stations.iter().map(|s| line.point_at(*s)).collect();
     // The sides meet to the bit.

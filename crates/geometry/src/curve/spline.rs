@@ -97,6 +97,22 @@ impl CubicSpline {
         Ok(Self { parameters, points, moments, periodic: false })
     }
 
+    /// The spline that leaves its ends as the parabolas through the first and the last three points do: where a curve bends
+    /// at its ends, a natural spline, straight there, swings beside them. One parameter a point; at least three points.
+    ///
+    /// # Errors
+    /// [`SplineError`] where the inputs do not fit, are not finite, or the parameters do not increase.
+    pub fn parabolic(parameters: Vec<f64>, points: Vec<DVec3>) -> Result<Self, SplineError> {
+        check(&parameters, &points, 3, points.len())?;
+        let (steps, slopes) = steps_and_slopes(&parameters, &points, false);
+        let last = slopes.len() - 1;
+        let at_end = |end: usize, next: usize| {
+            slopes[end] + (slopes[end] - slopes[next]) * (steps[end] / (steps[end] + steps[next]))
+        };
+        let (start, end) = (at_end(0, 1), at_end(last, last - 1));
+        Self::clamped(parameters, points, start, end)
+    }
+
     /// The closed spline that comes back to its first point at the last parameter: one parameter more than points;
     /// at least three points.
     ///
@@ -291,6 +307,26 @@ mod tests {
             let found = spline.position(*t);
             assert!((found - DVec3::new(0.0, *expected, -2.0 * expected)).length() < 1e-12, "{t}: {found}");
         }
+    }
+
+    #[test]
+    fn parabolic_ends_follow_what_bends_there() {
+        // Points of a circle at uneven angles: the slope at the ends, and how far it is off between points.
+        let angles = [0.0, 0.07, 0.2, 0.26, 0.4, 0.5_f64];
+        let points: Vec<DVec3> = angles.iter().map(|a| DVec3::new(a.cos(), a.sin(), 0.0)).collect();
+        let off = |spline: &CubicSpline| {
+            let places = (0..=200).map(|k| spline.position(0.5 * f64::from(k) / 200.0));
+            places.map(|p| (p.length() - 1.0).abs()).fold(0.0, f64::max)
+        };
+        let round = CubicSpline::parabolic(angles.to_vec(), points.clone()).unwrap();
+        let natural = CubicSpline::natural(angles.to_vec(), points.clone()).unwrap();
+        assert!(round.derivative(0.0).distance(DVec3::Y) < 0.01 && natural.derivative(0.0).distance(DVec3::Y) > 0.02);
+        assert!(off(&round) < 0.2 * off(&natural), "{} {}", off(&round), off(&natural));
+        let few = CubicSpline::parabolic(vec![0.0, 1.0], points[..2].to_vec()).unwrap_err();
+        assert!(matches!(few, SplineError::TooFewPoints { found: 2, needed: 3 }), "{few}");
+        let parabola = |t: f64| DVec3::new(t, t * t, 1.0 - t * t);
+        let exact = CubicSpline::parabolic(vec![-1.0, 0.5, 2.0], [-1.0, 0.5, 2.0].map(parabola).to_vec()).unwrap();
+        assert!(exact.position(1.3).distance(parabola(1.3)) < 1e-14);
     }
 
     #[test]

@@ -46,6 +46,7 @@ pub(crate) fn cut(mesh: &Mesh, heights: &[f64], line: Line<'_>) -> Result<Mesh, 
         vertex_normals: vertex_normals(mesh),
         renumbered: vec![None; mesh.positions().len()],
         crossings: BTreeMap::new(),
+        places: Vec::new(),
         positions: Vec::new(),
         corners: Vec::new(),
         counts: Vec::new(),
@@ -53,14 +54,26 @@ pub(crate) fn cut(mesh: &Mesh, heights: &[f64], line: Line<'_>) -> Result<Mesh, 
         uvs: Vec::new(),
         sources: Vec::new(),
     };
+    let mut whole: Vec<usize> = Vec::new();
     for polygon in 0..mesh.polygon_count() {
         let range = mesh.corner_range(polygon);
-        let inside: Vec<bool> = range.clone().map(|c| heights[mesh.corners()[c] as usize] >= 0.0).collect();
-        let changes = (0..inside.len()).filter(|i| inside[*i] != inside[(*i + 1) % inside.len()]).count();
+        let within = |corner: usize| heights[mesh.corners()[corner] as usize] >= 0.0;
+        let mut before = within(range.end - 1);
+        let first = before;
+        let changes = range
+            .clone()
+            .filter(|corner| {
+                let now = within(*corner);
+                std::mem::replace(&mut before, now) != now
+            })
+            .count();
         match changes {
-            0 if inside[0] => cutter.polygon(polygon, &range.collect::<Vec<_>>()),
-            0 => {}
-            2 => cutter.polygon(polygon, &range.collect::<Vec<_>>()),
+            0 if !first => {}
+            0 | 2 => {
+                whole.clear();
+                whole.extend(range);
+                cutter.polygon(polygon, &whole);
+            }
             _ => {
                 for triangle in polygon_triangles(mesh, polygon) {
                     cutter.polygon(polygon, &triangle);
@@ -86,6 +99,8 @@ struct Cutter<'a> {
     renumbered: Vec<Option<u32>>,
     /// New vertices by the side they cut, with the share of the way along it, the lower index first, and its direction.
     crossings: BTreeMap<[u32; 2], (u32, f64, DVec3)>,
+    /// Corners of the polygon at hand.
+    places: Vec<(u32, Place)>,
     positions: Vec<DVec3>,
     corners: Vec<u32>,
     counts: Vec<usize>,
@@ -106,7 +121,9 @@ impl Cutter<'_> {
 
     /// Adds what remains of a polygon, or of a part of it, with these corners.
     fn polygon(&mut self, source: usize, corners: &[usize]) {
-        let mut places: Vec<(u32, Place)> = Vec::with_capacity(corners.len() + 1);
+        // Taken for the time being, so that each polygon does not ask for memory of its own.
+        let mut places = std::mem::take(&mut self.places);
+        places.clear();
         for (i, corner) in corners.iter().enumerate() {
             let next = corners[(i + 1) % corners.len()];
             if self.height(*corner) >= 0.0 {
@@ -129,6 +146,7 @@ impl Cutter<'_> {
             || places.iter().all(|(_, place)| matches!(place, Place::Corner(c) if self.height(*c) == 0.0))
                 && corners.iter().any(|c| self.height(*c) < 0.0)
         {
+            self.places = places;
             return;
         }
         for (vertex, place) in &places {
@@ -152,6 +170,7 @@ impl Cutter<'_> {
         }
         self.counts.push(places.len());
         self.sources.push(Some(source));
+        self.places = places;
     }
 
     fn kept(&mut self, vertex: u32) -> u32 {

@@ -1,6 +1,7 @@
 //! Polygon meshes and what can be measured on them.
 
 pub mod adjacency;
+mod boundary_loops;
 pub mod caps;
 pub mod check;
 pub mod compare;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
 
+use super::boundary_loops::KeptLoops;
 use super::face_names::{FaceNames, NamedBy};
 
 /// Polygons over shared vertices. A *corner* is one vertex of one polygon; UVs and normals live at the corners, so
@@ -23,6 +24,7 @@ pub struct Mesh {
     uvs: Option<Vec<DVec2>>,
     groups: Option<Arc<FaceNames>>,
     materials: Option<Arc<FaceNames>>,
+    pub(super) kept_loops: KeptLoops,
 }
 
 /// Why data does not make a mesh.
@@ -94,8 +96,17 @@ impl Default for Mesh {
 
 impl Mesh {
     fn bare(positions: Vec<DVec3>, corners: Vec<u32>, starts: Vec<u32>) -> Self {
-        let name = String::new();
-        Self { name, positions, corners, starts, normals: None, uvs: None, groups: None, materials: None }
+        Self {
+            name: String::new(),
+            positions,
+            corners,
+            starts,
+            normals: None,
+            uvs: None,
+            groups: None,
+            materials: None,
+            kept_loops: KeptLoops::default(),
+        }
     }
 
     /// Makes a mesh from vertices and polygons (each a list of vertex indices, counter-clockwise seen from outside).
@@ -197,6 +208,7 @@ impl Mesh {
             uvs: self.uvs.clone(),
             groups: self.groups.clone(),
             materials: self.materials.clone(),
+            kept_loops: self.kept_loops.clone(),
         };
         match normals {
             Some(normals) => mesh.with_normals(normals),

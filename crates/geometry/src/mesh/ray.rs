@@ -60,6 +60,32 @@ impl MeshRays {
         self.hit(origin, direction, Wanted::Last)
     }
 
+    /// Whether a ray hits anything on its way up to `limit` (in lengths of the direction, that included): the first hit is no
+    /// farther, which need not be found.
+    pub(crate) fn any_within(&self, origin: DVec3, direction: DVec3, limit: f64) -> bool {
+        if !origin.is_finite() || !direction.is_finite() || direction == DVec3::ZERO {
+            return false;
+        }
+        let ray = Ray::new(origin, direction);
+        let mut open = vec![0];
+        while let Some(node) = open.pop() {
+            let Some((enters, _)) = ray.passes(&self.tree.nodes[node]) else { continue };
+            if enters > limit {
+                continue;
+            }
+            match self.tree.nodes[node].content {
+                Content::Leaf { from, to } => {
+                    let within = |along: f64| along <= limit;
+                    if self.tree.triangles[from..to].iter().any(|t| ray.meets(t.points).is_some_and(within)) {
+                        return true;
+                    }
+                }
+                Content::Inner { right } => open.extend([right, node + 1]),
+            }
+        }
+        false
+    }
+
     fn hit(&self, origin: DVec3, direction: DVec3, wanted: Wanted) -> Option<RayHit> {
         if !origin.is_finite() || !direction.is_finite() || direction == DVec3::ZERO {
             return None;
@@ -219,6 +245,13 @@ mod tests {
         assert!((first.along - 1.0).abs() < 0.01 && (last.along - 2.0).abs() < 0.01);
         assert_eq!(rays.first(origin, -direction), None);
         assert_eq!(rays.first(origin + DVec3::Y * 1.1, direction), None);
+        // Something is met up to the first hit, and nothing before it.
+        for (limit, met) in
+            [(first.along, true), (last.along, true), (first.along * (1.0 - 1e-12), false), (0.0, false)]
+        {
+            assert_eq!(rays.any_within(origin, direction, limit), met, "{limit}");
+        }
+        assert!(!rays.any_within(origin, -direction, 9.0) && !rays.any_within(DVec3::NAN, direction, 9.0));
     }
 
     #[test]

@@ -8,7 +8,7 @@ use super::cut::{Line, cut};
 use super::distance::NoPolygons;
 use super::{Mesh, MeshError, MeshRays, measure};
 use crate::curve::{ArcLength, Curve, CurveError};
-use crate::polygon::encloses;
+use crate::polygon::Inside;
 
 /// Which of the sides of a mesh that lie behind one another in a view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -145,7 +145,9 @@ pub fn cut_along(
 ) -> Result<Mesh, StrokeError> {
     let direction = unit(direction)?;
     let under = Under::new(stroke, direction);
-    let rays = under.rays(mesh)?;
+    if mesh.polygon_count() == 0 {
+        return Err(NoPolygons.into());
+    }
     let name = || stroke.name().to_owned();
     if !stroke.is_closed() {
         return Err(StrokeError::Open { stroke: name() });
@@ -154,8 +156,8 @@ pub fn cut_along(
     if !inside.contains(&true) {
         return Err(StrokeError::NothingInside { stroke: name() });
     }
-    if let Some(rays) = rays.filter(|_| !through) {
-        seen_only(mesh, &rays, direction, behind(mesh, stroke), &mut inside);
+    if !through {
+        seen_only(mesh, &under, direction, behind(mesh, stroke), &mut inside)?;
     }
     if keep == Keep::Outside && !inside.contains(&false) {
         return Err(StrokeError::NothingOutside { stroke: name() });
@@ -169,9 +171,7 @@ pub fn cut_along(
 
 /// A stroke as it is seen along a direction, and what lies under it.
 pub(super) struct Under {
-    outline: Vec<DVec2>,
-    low: DVec2,
-    high: DVec2,
+    outline: Inside,
     axes: [DVec3; 2],
 }
 
@@ -179,15 +179,12 @@ impl Under {
     pub(super) fn new(stroke: &Curve, direction: DVec3) -> Self {
         let axes: [DVec3; 2] = direction.any_orthonormal_pair().into();
         let outline: Vec<DVec2> = stroke.points().iter().map(|p| flat(axes, *p)).collect();
-        let (low, high) =
-            outline.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| (low.min(*p), high.max(*p)));
-        Self { outline, low, high, axes }
+        Self { outline: Inside::new(&outline), axes }
     }
 
     /// Even-odd rule.
     pub(super) fn encloses(&self, point: DVec3) -> bool {
-        let p = flat(self.axes, point);
-        p.cmpge(self.low).all() && p.cmple(self.high).all() && encloses(&self.outline, p)
+        self.outline.encloses(flat(self.axes, point))
     }
 
     /// The part of a mesh that rays through the stroke and what it encloses can meet; `None` where there is none.
@@ -196,8 +193,9 @@ impl Under {
             return Err(NoPolygons);
         }
         // What only touches the box may be met too, by rounding.
-        let margin = DVec2::splat(1e-9 * (measure::diagonal(mesh) + self.low.distance(self.high)));
-        let (low, high) = (self.low - margin, self.high + margin);
+        let (low, high) = self.outline.bounds();
+        let margin = DVec2::splat(1e-9 * (measure::diagonal(mesh) + low.distance(high)));
+        let (low, high) = (low - margin, high + margin);
         Ok(MeshRays::among(mesh, |points| {
             let [a, b, c] = points.map(|p| flat(self.axes, p));
             a.max(b).max(c).cmpge(low).all() && a.min(b).min(c).cmple(high).all()
@@ -224,11 +222,11 @@ pub(super) fn behind(mesh: &Mesh, stroke: &Curve) -> f64 {
 pub(super) fn is_seen(rays: &MeshRays, point: DVec3, direction: DVec3, reach: f64) -> bool {
     // What hides it lies farther before it than rounding puts its own polygons.
     let tolerance = 1e-6 * reach;
-    rays.first(point - reach * direction, direction).is_none_or(|hit| hit.along > reach - tolerance)
+    !rays.any_within(point - reach * direction, direction, reach - tolerance)
 }
 
 /// Of the pieces inside, leaves the one of which most vertices are seen.
-fn seen_only(mesh: &Mesh, rays: &MeshRays, direction: DVec3, reach: f64, inside: &mut [bool]) {
+fn seen_only(mesh: &Mesh, under: &Under, direction: DVec3, reach: f64, inside: &mut [bool]) -> Result<(), NoPolygons> {
     // Pieces by union of the vertices of each polygon that are inside.
     let mut parent: Vec<u32> = (0..).take(inside.len()).collect();
     fn root(parent: &mut [u32], mut at: u32) -> u32 {
@@ -246,17 +244,22 @@ fn seen_only(mesh: &Mesh, rays: &MeshRays, direction: DVec3, reach: f64, inside:
             parent[a.max(b) as usize] = a.min(b);
         }
     }
-    let mut seen: BTreeMap<u32, usize> = BTreeMap::new();
-    for (vertex, _) in inside.iter().enumerate().filter(|(_, inside)| **inside) {
-        let piece = root(&mut parent, u32::try_from(vertex).unwrap_or(u32::MAX));
-        let visible = is_seen(rays, mesh.positions()[vertex], direction, reach);
-        *seen.entry(piece).or_default() += usize::from(visible);
+    let mut pieces: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
+    for vertex in (0..).take(inside.len()).filter(|vertex| inside[*vertex as usize]) {
+        pieces.entry(root(&mut parent, vertex)).or_default().push(vertex);
     }
-    let best = seen.iter().max_by_key(|(piece, count)| (**count, std::cmp::Reverse(**piece))).map(|(piece, _)| *piece);
-    for (vertex, within) in inside.iter_mut().enumerate().filter(|(_, within)| **within) {
-        let piece = root(&mut parent, u32::try_from(vertex).unwrap_or(u32::MAX));
-        *within = Some(piece) == best;
+    if pieces.len() < 2 {
+        return Ok(());
     }
+    let Some(rays) = under.rays(mesh)? else { return Ok(()) };
+    let seen = |vertex: &&u32| is_seen(&rays, mesh.positions()[**vertex as usize], direction, reach);
+    let most =
+        |(piece, vertices): &(&u32, &Vec<u32>)| (vertices.iter().filter(seen).count(), std::cmp::Reverse(**piece));
+    let best = pieces.iter().max_by_key(most).map(|(piece, _)| *piece);
+    for (_, vertices) in pieces.iter().filter(|(piece, _)| Some(**piece) != best) {
+        vertices.iter().for_each(|vertex| inside[*vertex as usize] = false);
+    }
+    Ok(())
 }
 
 #[cfg(test)]

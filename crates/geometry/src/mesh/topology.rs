@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use super::Mesh;
 
 /// Polygons or vertices between two questions whether to go on: a few milliseconds.
-const STEP: usize = 1 << 16;
+pub(super) const STEP: usize = 1 << 16;
 
 /// The edges of a mesh with the polygons at each, sorted by their vertices, so that the same mesh always gives the same
 /// lists.
@@ -150,44 +150,7 @@ impl Topology {
     /// Next to edges that are not manifold or not consistent a chain of boundary edges may end without coming back;
     /// such a chain is given like a loop.
     pub fn boundary_loops(&self) -> Vec<Vec<u32>> {
-        let mut edges: Vec<[u32; 2]> = self.boundary_edges().iter().map(|[from, to]| [*to, *from]).collect();
-        edges.sort_unstable();
-        let mut taken = vec![false; edges.len()];
-        let mut loops = Vec::new();
-        let mut place = std::collections::BTreeMap::new();
-        for start in 0..edges.len() {
-            if taken[start] {
-                continue;
-            }
-            taken[start] = true;
-            let mut path = vec![edges[start][0]];
-            let mut at = edges[start][1];
-            place.clear();
-            place.insert(path[0], 0);
-            loop {
-                if let Some(&from) = place.get(&at) {
-                    let closed: Vec<u32> = path.drain(from..).collect();
-                    for vertex in &closed {
-                        place.remove(vertex);
-                    }
-                    loops.push(closed);
-                }
-                let outgoing = edges.partition_point(|e| e[0] < at);
-                let next = (outgoing..edges.len()).take_while(|i| edges[*i][0] == at).find(|i| !taken[*i]);
-                let Some(next) = next else {
-                    if !path.is_empty() {
-                        path.push(at);
-                        loops.push(path);
-                    }
-                    break;
-                };
-                place.insert(at, path.len());
-                path.push(at);
-                taken[next] = true;
-                at = edges[next][1];
-            }
-        }
-        loops
+        loops_of(self.boundary_edges())
     }
 
     /// Polygons that hang together by edges: one ascending list a shell, ordered by their first polygon.
@@ -225,6 +188,48 @@ impl Topology {
     pub fn euler_characteristic(&self) -> i64 {
         self.vertices as i64 - self.edge_count() as i64 + self.polygons as i64
     }
+}
+
+/// The loops of boundary edges, as [`Topology::boundary_loops`] gives them.
+pub(super) fn loops_of(boundary: Vec<[u32; 2]>) -> Vec<Vec<u32>> {
+    let mut edges: Vec<[u32; 2]> = boundary.into_iter().map(|[from, to]| [to, from]).collect();
+    edges.sort_unstable();
+    let mut taken = vec![false; edges.len()];
+    let mut loops = Vec::new();
+    let mut place = std::collections::BTreeMap::new();
+    for start in 0..edges.len() {
+        if taken[start] {
+            continue;
+        }
+        taken[start] = true;
+        let mut path = vec![edges[start][0]];
+        let mut at = edges[start][1];
+        place.clear();
+        place.insert(path[0], 0);
+        loop {
+            if let Some(&from) = place.get(&at) {
+                let closed: Vec<u32> = path.drain(from..).collect();
+                for vertex in &closed {
+                    place.remove(vertex);
+                }
+                loops.push(closed);
+            }
+            let outgoing = edges.partition_point(|e| e[0] < at);
+            let next = (outgoing..edges.len()).take_while(|i| edges[*i][0] == at).find(|i| !taken[*i]);
+            let Some(next) = next else {
+                if !path.is_empty() {
+                    path.push(at);
+                    loops.push(path);
+                }
+                break;
+            };
+            place.insert(at, path.len());
+            path.push(at);
+            taken[next] = true;
+            at = edges[next][1];
+        }
+    }
+    loops
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use crate::wire;
 pub(crate) fn kind() -> NodeKind {
     let mut node = NodeKind::declare(
         "clean-strokes",
-        1,
+        2,
         "curve",
         "Makes one curve of strokes that were drawn over one another, or go on where another ends: the line in their \
          middle, smoothed. Strokes that cross or part stay apart. Pen pressure is not kept.",

@@ -10,7 +10,7 @@ use crate::wire;
 pub(crate) fn kind() -> NodeKind {
     let mut node = NodeKind::declare(
         "split-border",
-        1,
+        2,
         "curve",
         "Takes a closed border apart at corners: three or four sides are the borders of a patch that closes a hole.",
     );

@@ -4,7 +4,6 @@
 use glam::DVec3;
 use maquette_geometry::border::{Border, boundaries, boundary_along};
 use maquette_geometry::curve::{ArcLength, closest};
-use maquette_geometry::mesh::Topology;
 use maquette_geometry::mesh::resample_border::{
     ResampleBorderError, ResampleBorderOptions, resample_border, resample_border_onto,
 };
@@ -28,7 +27,7 @@ impl Choices for Which {
 pub(crate) fn kind() -> NodeKind {
     let mut node = NodeKind::declare(
         "resample-border",
-        1,
+        2,
         "mesh",
         "Gives an open border of a mesh as many points as wanted, at equal distances, and new faces along it: a blend with \
          as many `nodes` can be welded to it.",
@@ -70,7 +69,7 @@ pub(crate) fn kind() -> NodeKind {
         node.figure("faces-replaced", Unit::None, "Faces along the border that went; 0 where it stays as it was.");
     node.evaluate(move |ports| {
         let body = &ports.read(mesh).0;
-        let loops = Topology::new(body).boundary_loops();
+        let loops = body.boundary_loops();
         let before: Vec<Border> = boundaries(body).at(mesh)?;
         let point = DVec3::from_array(ports.read(near).0);
         let (other, wanted) = (only(ports, beside)?, only(ports, like)?);

@@ -6,7 +6,60 @@ use glam::DVec3;
 
 use super::rim::Rim;
 use crate::curve::closest;
-use crate::mesh::{Mesh, Topology, measure};
+use crate::mesh::topology::EdgeUse;
+use crate::mesh::{Mesh, measure};
+
+/// The polygons around each vertex.
+pub(super) struct Around {
+    /// Where those of each vertex begin, and behind the last one the number of all.
+    starts: Vec<u32>,
+    polygons: Vec<u32>,
+}
+
+impl Around {
+    pub(super) fn new(mesh: &Mesh) -> Self {
+        let mut starts = vec![0; mesh.positions().len() + 1];
+        mesh.corners().iter().for_each(|vertex| starts[*vertex as usize + 1] += 1);
+        for vertex in 1..starts.len() {
+            starts[vertex] += starts[vertex - 1];
+        }
+        let mut next = starts.clone();
+        let mut polygons = vec![0; mesh.corners().len()];
+        for (polygon, corners) in mesh.polygons().enumerate() {
+            for vertex in corners {
+                let place = &mut next[*vertex as usize];
+                polygons[*place as usize] = polygon as u32;
+                *place += 1;
+            }
+        }
+        Self { starts, polygons }
+    }
+
+    fn of(&self, vertex: u32) -> &[u32] {
+        &self.polygons[self.starts[vertex as usize] as usize..self.starts[vertex as usize + 1] as usize]
+    }
+}
+
+/// The uses of all edges of the polygons that are gone, and of some others, sorted by edge, then polygon.
+fn uses_near(mesh: &Mesh, around: &Around, gone: &[bool]) -> Vec<EdgeUse> {
+    let going = (0..gone.len()).filter(|polygon| gone[*polygon]);
+    let mut near: Vec<u32> =
+        going.flat_map(|polygon| mesh.polygon(polygon)).flat_map(|vertex| around.of(*vertex)).copied().collect();
+    near.sort_unstable();
+    near.dedup();
+    let mut uses = Vec::with_capacity(4 * near.len());
+    for polygon in near {
+        let corners = mesh.polygon(polygon as usize);
+        for (k, &from) in corners.iter().enumerate() {
+            let to = corners[(k + 1) % corners.len()];
+            if from != to {
+                uses.push(EdgeUse { edge: [from.min(to), from.max(to)], polygon, forward: from < to });
+            }
+        }
+    }
+    uses.sort_unstable();
+    uses
+}
 
 /// Faces along a border that go.
 pub(super) struct Collar {
@@ -21,27 +74,24 @@ pub(super) struct Collar {
 impl Collar {
     /// The faces with a vertex within `reach` of the border, over the surface. The error is a place on another border
     /// that they reach.
-    pub(super) fn of(mesh: &Mesh, rim: &Rim, reach: f64) -> Result<Self, DVec3> {
-        let topology = Topology::new(mesh);
-        let mut around: Vec<Vec<u32>> = vec![Vec::new(); mesh.positions().len()];
-        for (polygon, corners) in mesh.polygons().enumerate() {
-            corners.iter().for_each(|vertex| around[*vertex as usize].push(polygon as u32));
-        }
+    pub(super) fn of(mesh: &Mesh, around: &Around, rim: &Rim, reach: f64) -> Result<Self, DVec3> {
         let mut gone = vec![false; mesh.polygon_count()];
-        let mut taken = vec![false; mesh.positions().len()];
+        // Whether a vertex is within reach, as far as it was looked at.
+        let mut taken: Vec<Option<bool>> = vec![None; mesh.positions().len()];
         let mut open = rim.vertices.clone();
-        open.iter().for_each(|vertex| taken[*vertex as usize] = true);
+        open.iter().for_each(|vertex| taken[*vertex as usize] = Some(true));
         while let Some(vertex) = open.pop() {
-            for &polygon in &around[vertex as usize] {
+            for &polygon in around.of(vertex) {
                 if std::mem::replace(&mut gone[polygon as usize], true) {
                     continue;
                 }
                 for &next in mesh.polygon(polygon as usize) {
-                    let near =
-                        !taken[next as usize] && closest(&rim.curve, mesh.positions()[next as usize]).distance <= reach;
-                    if near {
-                        taken[next as usize] = true;
-                        open.push(next);
+                    if taken[next as usize].is_none() {
+                        let near = closest(&rim.curve, mesh.positions()[next as usize]).distance <= reach;
+                        taken[next as usize] = Some(near);
+                        if near {
+                            open.push(next);
+                        }
                     }
                 }
             }
@@ -52,7 +102,8 @@ impl Collar {
             // Sides between what goes and what remains, run like the border; a vertex with several is pinched.
             let mut next: BTreeMap<u32, u32> = BTreeMap::new();
             let mut pinched: Vec<u32> = Vec::new();
-            for uses in topology.edges() {
+            let uses = uses_near(mesh, around, &gone);
+            for uses in uses.chunk_by(|a, b| a.edge == b.edge) {
                 let [a, b] = uses[0].directed();
                 let going = uses.iter().filter(|side| gone[side.polygon as usize]).count();
                 if uses.len() == 1 && going == 1 && !(own.contains(&a) && own.contains(&b)) {
@@ -71,7 +122,7 @@ impl Collar {
             }
             if !pinched.is_empty() {
                 for vertex in pinched {
-                    around[vertex as usize].iter().for_each(|polygon| gone[*polygon as usize] = true);
+                    around.of(vertex).iter().for_each(|polygon| gone[*polygon as usize] = true);
                 }
                 continue;
             }
@@ -89,27 +140,25 @@ impl Collar {
                 return Err(rim.centre());
             };
             if loops.len() == 1 {
-                return Ok(Self::finished(mesh, gone, &around, loops.into_iter().next().unwrap_or_default()));
+                return Ok(Self::finished(mesh, gone, around, loops.into_iter().next().unwrap_or_default()));
             }
             // Islands that hang on nothing but what goes, go too; where two hang together, it is no collar.
-            let kept = reached(mesh, &around, &gone, &loops[longest]);
+            let kept = reached(mesh, around, &gone, &loops[longest]);
             for (_, island) in loops.iter().enumerate().filter(|(k, _)| *k != longest) {
-                if island.iter().any(|vertex| around[*vertex as usize].iter().any(|polygon| kept[*polygon as usize])) {
+                if island.iter().any(|vertex| around.of(*vertex).iter().any(|polygon| kept[*polygon as usize])) {
                     return Err(mesh.positions()[island[0] as usize]);
                 }
-                let drowned = reached(mesh, &around, &gone, island);
+                let drowned = reached(mesh, around, &gone, island);
                 gone.iter_mut().zip(drowned).for_each(|(gone, drowned)| *gone |= drowned);
             }
         }
     }
 
-    fn finished(mesh: &Mesh, gone: Vec<bool>, around: &[Vec<u32>], outline: Vec<u32>) -> Self {
+    fn finished(mesh: &Mesh, gone: Vec<bool>, around: &Around, outline: Vec<u32>) -> Self {
         let mut normals = BTreeMap::new();
         for &vertex in &outline {
             let mut sum = DVec3::ZERO;
-            for polygon in
-                around[vertex as usize].iter().map(|polygon| *polygon as usize).filter(|polygon| !gone[*polygon])
-            {
+            for polygon in around.of(vertex).iter().map(|polygon| *polygon as usize).filter(|polygon| !gone[*polygon]) {
                 let corner = mesh.corner_range(polygon).find(|corner| mesh.corners()[*corner] == vertex);
                 sum += match (mesh.normals(), corner) {
                     (Some(normals), Some(corner)) => normals[corner],
@@ -142,11 +191,11 @@ fn loops_of(mut next: BTreeMap<u32, u32>) -> Vec<Vec<u32>> {
 }
 
 /// The polygons that remain and hang together with those at these vertices.
-fn reached(mesh: &Mesh, around: &[Vec<u32>], gone: &[bool], from: &[u32]) -> Vec<bool> {
+fn reached(mesh: &Mesh, around: &Around, gone: &[bool], from: &[u32]) -> Vec<bool> {
     let mut reached = vec![false; gone.len()];
     let mut open = from.to_vec();
     while let Some(vertex) = open.pop() {
-        for &polygon in &around[vertex as usize] {
+        for &polygon in around.of(vertex) {
             let polygon = polygon as usize;
             if !gone[polygon] && !std::mem::replace(&mut reached[polygon], true) {
                 open.extend(mesh.polygon(polygon));

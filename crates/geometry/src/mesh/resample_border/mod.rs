@@ -17,7 +17,7 @@ use super::triangulate::polygon_triangles;
 use super::{Mesh, MeshError};
 use crate::border::Border;
 use crate::curve::{SplineError, closest, place};
-use collar::Collar;
+use collar::{Around, Collar};
 use rim::Rim;
 
 /// Fewest and most points of a border.
@@ -129,7 +129,8 @@ pub enum ResampleBorderError {
 /// The faces within 0.6 sides of the new border go, more where that is needed; the strip that takes their place is of
 /// least summed square length of its sides between both borders, among strips that do not fold (dynamic programming,
 /// Fuchs, Kedem and Uselton 1977), of quads where two triangles make a convex one. Normals of new corners are those of
-/// the mesh at the old border and at what remains; UVs are those of the nearest place of the old mesh.
+/// the mesh at the old border, square to the smooth new one, and at what remains; UVs are those of the nearest place of
+/// the old mesh.
 ///
 /// A border that has that number of points already, its longest side at most 3 times its shortest, keeps them.
 ///
@@ -200,9 +201,10 @@ fn replaced(
     let told = |share: f64| if progress(share) { Ok(()) } else { Err(E::Stopped) };
     let at = rim.centre();
     let mut fold = at;
+    let around = Around::new(mesh);
     for (attempt, reach) in REACHES.into_iter().enumerate() {
         told(0.2 + 0.1 * attempt as f64)?;
-        let collar = match Collar::of(mesh, rim, reach * even.spacing) {
+        let collar = match Collar::of(mesh, &around, rim, reach * even.spacing) {
             Ok(collar) => collar,
             // Wider ones are no better.
             Err(other) if attempt == 0 => return Err(E::NearAnother { at, other }),

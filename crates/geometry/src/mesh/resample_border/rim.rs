@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::ResampleBorderError;
 use crate::border::{Border, tangent_at};
-use crate::curve::{ArcLength, CubicSpline, Curve, SplineLength, chord_parameters, closest};
+use crate::curve::{ArcLength, CubicSpline, Curve, SplineError, SplineLength, chord_parameters, closest};
 use crate::mesh::{Mesh, measure};
 
 /// Vertices of a border nearer to the one before than this share of the mean distance carry no spline: what is uncertain
@@ -95,6 +95,9 @@ impl Rim {
             points.push(line.point_at(s));
             normals.push(normal_spline.position(line.parameter_at(s)).normalize_or_zero());
         }
+        if smooth {
+            square_to(&points, &mut normals)?;
+        }
         Ok(Even { points, normals, spacing })
     }
 
@@ -147,6 +150,19 @@ impl Rim {
         }
         kept
     }
+}
+
+/// Turns normals square to the smooth closed curve through points. What is joined to a border goes through its points and
+/// knows no others: in a bend that is tight for them, the curve is off the surface's tangent plane, and both sides of the
+/// joint would differ by as much.
+fn square_to(points: &[DVec3], normals: &mut [DVec3]) -> Result<(), SplineError> {
+    let parameters = chord_parameters(points, true);
+    let curve = CubicSpline::periodic(parameters.clone(), points.to_vec())?;
+    for (normal, parameter) in normals.iter_mut().zip(parameters) {
+        let along = curve.derivative(parameter).normalize_or_zero();
+        *normal = (*normal - along * along.dot(*normal)).normalize_or_zero();
+    }
+    Ok(())
 }
 
 /// Unit direction in which the parabola through three points leaves the first.

@@ -90,6 +90,22 @@ pub(super) fn strip(
             ([a, b, c, _], _) => Some(side + if folded([a, b, c]) { fold } else { 0.0 }),
         }
     };
+    // What a strip costs that takes the cheapest step each time, by the points it passes: no better one begins dearer.
+    let mut most = 0.0;
+    let (mut i, mut j) = (0, 0);
+    while (i, j) != (rows, columns) {
+        let steps = [Step::Both, Step::Outer, Step::Inner].into_iter().filter_map(|step| {
+            let [di, dj] = step.ahead();
+            let fits = i + di <= rows && j + dj <= columns;
+            Some((step, if fits { price(i, j, step) } else { None }?))
+        });
+        let worth = |(step, price): &(Step, f64)| price / if *step == Step::Both { 2.0 } else { 1.0 };
+        let Some((step, price)) = steps.min_by(|a, b| worth(a).total_cmp(&worth(b))) else { break };
+        most += price;
+        (i, j) = (i + step.ahead()[0], j + step.ahead()[1]);
+    }
+    // It is summed in another order than others.
+    most *= 1.0 + 1e-9;
     let width = columns + 1;
     let mut cost = vec![f64::INFINITY; (rows + 1) * width];
     let mut by = vec![Step::Both; cost.len()];
@@ -98,6 +114,9 @@ pub(super) fn strip(
         go_on()?;
         for j in 0..=columns {
             let here = cost[i * width + j];
+            if here > most {
+                continue;
+            }
             for step in [Step::Both, Step::Outer, Step::Inner] {
                 let [di, dj] = step.ahead();
                 if i + di > rows || j + dj > columns {

@@ -2,7 +2,6 @@
 
 use super::WeldError;
 use crate::mesh::Mesh;
-use crate::mesh::topology::Topology;
 
 /// An open loop of a part.
 pub(super) struct OpenLoop {
@@ -25,10 +24,9 @@ impl Boundary {
         let mut starts = vec![[0; 2]];
         let mut behind = [0; 2];
         for (part, mesh) in parts.iter().enumerate() {
-            let topology = Topology::new_while(mesh, go_on)?;
             // The joined mesh has 32-bit indices.
-            let open = topology.boundary_loops().into_iter();
-            let shifted = open.map(|rim| rim.into_iter().map(|vertex| vertex + behind[0] as u32).collect());
+            let open = mesh.boundary_loops_while(go_on)?.iter();
+            let shifted = open.map(|rim| rim.iter().map(|vertex| vertex + behind[0] as u32).collect());
             loops.extend(shifted.map(|vertices| OpenLoop { part, vertices }));
             let sizes = [mesh.positions().len(), mesh.polygon_count()];
             for (place, size) in behind.iter_mut().zip(sizes) {

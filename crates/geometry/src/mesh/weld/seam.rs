@@ -46,11 +46,13 @@ pub(super) fn seams(
     // Corners of the joined mesh at the vertices that were welded, by those.
     let mut at_vertex: BTreeMap<u32, Vec<CornerNormal>> =
         pairs.values().flatten().flatten().map(|vertex| (*vertex, Vec::new())).collect();
+    let mut on_seam = vec![false; joined.positions().len()];
+    at_vertex.keys().for_each(|vertex| on_seam[*vertex as usize] = true);
     for polygon in 0..joined.polygon_count() {
         if polygon.is_multiple_of(1 << 16) {
             go_on()?;
         }
-        for corner in joined.corner_range(polygon) {
+        for corner in joined.corner_range(polygon).filter(|corner| on_seam[joined.corners()[*corner] as usize]) {
             if let Some(corners) = at_vertex.get_mut(&joined.corners()[corner]) {
                 let normal = match joined.normals() {
                     Some(normals) => normals[corner],
