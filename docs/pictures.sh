@@ -38,6 +38,15 @@ draw bar-bent bar-bent 480x400 --view front
 draw bar-twisted bar-twisted 240x480 --wireframe
 draw hand hand 560x400
 draw body-posed body-posed 400x640
+draw fist fist 560x400
+draw teapot teapot 560x320 --view front
+# The same without turning detail along: plain Laplacian editing.
+draw bar-bent bar-bent-unturned 480x400 --view front --set bent.quality=unturned --set bound.keeps=coordinates
+draw bar-twisted bar-twisted-unturned 240x480 --wireframe --set twisted.quality=unturned --set bound.keeps=coordinates
+draw hand hand-unturned 560x400 --set bent.quality=unturned --set bound.keeps=coordinates
+draw body-posed body-posed-unturned 400x640 --set posed.quality=unturned
+draw fist fist-unturned 560x400 --set bent.quality=unturned --set bound.keeps=coordinates
+draw teapot teapot-unturned 560x320 --view front --set bent.quality=unturned
 draw open-strokes open-strokes 480x400 --curves
 for experiment in cantilever supported tyre; do
     "$maquette" render "graphs/experiments/$experiment.ron" -o "docs/pictures/$experiment.png" --size 640x400 --quiet \

@@ -104,3 +104,51 @@ fn light_and_dark_both_have_contrast() {
     let sum = |picture| at(picture, corner).iter().map(|c| i32::from(*c)).sum::<i32>();
     assert!(sum(&dark) < 240 && sum(&light) > 560, "{} and {}", sum(&dark), sum(&light));
 }
+
+/// Size of the pictures that are compared: small, so that what differs between renderers, edges and letters, does not count.
+const SMALL: [u32; 2] = [150, 100];
+/// Set to any value, the pictures that are compared with are written anew; look at them before they are committed.
+const WRITE: &str = "MAQUETTE_WRITE_PICTURES";
+
+/// Compares a picture with the one of that name in `tests/pictures`.
+#[track_caller]
+fn assert_looks_like(window: &mut Window, name: &str) {
+    let picture = window.render().unwrap();
+    let small = image::imageops::resize(&picture, SMALL[0], SMALL[1], image::imageops::FilterType::Triangle);
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/pictures").join(name).with_extension("png");
+    if std::env::var_os(WRITE).is_some() {
+        small.save(&path).unwrap();
+        return;
+    }
+    let known = image::open(&path).unwrap().into_rgba8();
+    assert_eq!(known.dimensions(), small.dimensions());
+    let offs: Vec<i32> =
+        known.pixels().zip(small.pixels()).map(|(a, b)| differ([a[0], a[1], a[2]], [b[0], b[1], b[2]])).collect();
+    // Summed over red, green and blue, of 765.
+    let mean = f64::from(offs.iter().sum::<i32>()) / offs.len() as f64;
+    let wrong = offs.iter().filter(|off| **off > 120).count() as f64 / offs.len() as f64;
+    assert!(mean < 6.0 && wrong < 0.004, "{name} looks otherwise: {mean} on the mean, {wrong} of it clearly");
+}
+
+#[test]
+fn the_window_looks_as_it_did() {
+    let mut window = drawn();
+    window.state_mut().ask(ViewCommand::Find("sorted".to_owned()));
+    settle(&mut window);
+    assert_looks_like(&mut window, "sorted");
+    window.state_mut().settings_mut().shading = Shading::Zebra;
+    window.ctx.set_theme(egui::Theme::Light);
+    window.run_steps(3);
+    settle(&mut window);
+    assert_looks_like(&mut window, "zebra-light");
+    let options = Options { path: Some(graph("leg-deformed.ron")), ..Options::default() };
+    let mut window = Harness::builder()
+        .with_size(vec2(1200.0, 800.0))
+        .with_step_dt(1.0 / 60.0)
+        .renderer(WgpuTestRenderer::new())
+        .build_eframe(move |context| App::new(context, options).unwrap());
+    window.state_mut().settings_mut().shading = Shading::Silhouette;
+    settle(&mut window);
+    window.run_steps(3);
+    assert_looks_like(&mut window, "silhouette");
+}

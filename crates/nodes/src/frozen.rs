@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 use maquette_geometry::border::Border;
 use maquette_geometry::curve::Curve;
-use maquette_geometry::mesh::Mesh;
+use maquette_geometry::mesh::{FaceNames, Mesh, NamedBy};
 use maquette_geometry::scene::Material;
 use maquette_geometry::sections::Sections;
 use maquette_graph::freeze::{Freeze, Frozen, ThawError};
@@ -86,14 +86,19 @@ fn thaw_curves(frozen: &Frozen) -> Result<Vec<Curve>, ThawError> {
 fn freeze_mesh(mesh: &Mesh) -> Frozen {
     let counts: Vec<usize> = mesh.polygons().map(<[u32]>::len).collect();
     let uvs = |uvs: &[DVec2]| Frozen::Numbers(uvs.iter().flat_map(|uv| uv.to_array()).collect());
-    Frozen::record([
+    let names = |names: &FaceNames| Frozen::List(names.iter().map(Frozen::text).collect());
+    let named = [("groups", mesh.groups()), ("materials", mesh.materials())];
+    // Left out where there are none, as in golden files from before meshes had names.
+    let named = named.into_iter().filter_map(|(field, of)| of.map(|of| (field, names(of))));
+    let fields = [
         ("name", Frozen::text(mesh.name())),
         ("positions", points(mesh.positions())),
         ("corners", Frozen::Integers(mesh.corners().iter().map(|vertex| i64::from(*vertex)).collect())),
         ("corners-of-faces", indices(&counts)),
         ("normals", mesh.normals().map_or(Frozen::Nothing, points)),
         ("uvs", mesh.uvs().map_or(Frozen::Nothing, uvs)),
-    ])
+    ];
+    Frozen::Record(fields.into_iter().chain(named).map(|(field, value)| (field.to_owned(), value)).collect())
 }
 
 fn thaw_mesh(frozen: &Frozen) -> Result<Mesh, ThawError> {
@@ -107,6 +112,12 @@ fn thaw_mesh(frozen: &Frozen) -> Result<Mesh, ThawError> {
     if let Some(numbers) = optional(frozen.field("uvs")?, |uvs| uvs.numbers().map(<[f64]>::to_vec))? {
         let (pairs, []) = numbers.as_chunks::<2>() else { return Err(no_value("a UV has two numbers")) };
         mesh = mesh.with_uvs(pairs.iter().copied().map(DVec2::from_array).collect()).map_err(no_value)?;
+    }
+    for (field, by) in [("groups", NamedBy::Group), ("materials", NamedBy::Material)] {
+        if let Ok(names) = frozen.field(field) {
+            let names = names.list()?.iter().map(Frozen::as_text).collect::<Result<Vec<_>, _>>()?;
+            mesh = mesh.with_names(by, FaceNames::new(names)).map_err(no_value)?;
+        }
     }
     Ok(mesh.named(frozen.field("name")?.as_text()?))
 }

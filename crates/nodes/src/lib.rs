@@ -93,6 +93,7 @@ fn kinds() -> Vec<NodeKind> {
         select::combine_selections::kind(),
         select::select_by_distance::kind(),
         select::select_by_mesh::kind(),
+        select::select_by_name::kind(),
         select::select_by_normal::kind(),
         select::select_by_shape::kind(),
         select::select_by_stroke::kind(),

@@ -95,6 +95,15 @@ fn hash_mesh(hasher: &mut ContentHasher, mesh: &mesh::Mesh) {
         Some(uvs) => hasher.numbers(bytemuck::cast_slice(uvs)),
         None => hasher.integer(u64::MAX),
     }
+    // Left out where there are none, so that such meshes keep the hashes they had before meshes had names.
+    for (kind, names) in [mesh.groups(), mesh.materials()].into_iter().enumerate() {
+        if let Some(names) = names {
+            hasher.integer(kind as u64);
+            hasher.integer(names.names().len() as u64);
+            names.names().iter().for_each(|name| hasher.text(name));
+            hasher.indices(names.places());
+        }
+    }
 }
 
 fn mesh_bytes(mesh: &mesh::Mesh) -> usize {
@@ -103,6 +112,7 @@ fn mesh_bytes(mesh: &mesh::Mesh) -> usize {
         + 4 * mesh.polygon_count()
         + mesh.normals().map_or(0, size_of_val)
         + mesh.uvs().map_or(0, size_of_val)
+        + [mesh.groups(), mesh.materials()].into_iter().flatten().map(mesh::FaceNames::byte_size).sum::<usize>()
 }
 
 fn count(number: usize, one: &str, many: &str) -> String {
@@ -178,7 +188,8 @@ impl Wire for Sections {
 
 impl Wire for Mesh {
     const NAME: &'static str = "mesh";
-    const DESCRIPTION: &'static str = "A polygon mesh with normals and UVs at its corners.";
+    const DESCRIPTION: &'static str =
+        "A polygon mesh with normals and UVs at its corners, and names of groups and materials at its polygons.";
 
     fn hash_content(&self, hasher: &mut ContentHasher) {
         hash_mesh(hasher, &self.0);

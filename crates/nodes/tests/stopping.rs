@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use glam::DVec3;
 use maquette_geometry::curve::Curve;
 use maquette_geometry::file_format::curves_json;
-use maquette_geometry::mesh::{Mesh, Selection};
+use maquette_geometry::mesh::{FaceNames, Mesh, NamedBy, Selection};
 use maquette_geometry::sections::Sections;
 use maquette_graph::harness::{Harness, TrialError};
 use maquette_graph::{Catalogue, Literal, Vector};
@@ -185,6 +185,22 @@ fn nodes_on_meshes() {
     let lasso = wire::Curves(vec![ring("", 300, 150.0, 9.0)]);
     stops(&catalogue, "select-by-stroke", 400 * 400 / 4096, |h| {
         h.give("mesh", mesh.clone()).give("strokes", lasso.clone()).set("view", Literal::Choice("top".into()))
+    });
+    let steps = 400 * 400 / 4096;
+    stops(&catalogue, "select-by-shape", steps, |h| h.give("mesh", mesh.clone()).set("radius", Literal::Number(9.0)));
+    stops(&catalogue, "select-by-normal", 2 * steps, |h| h.give("mesh", mesh.clone()));
+    stops(&catalogue, "select-by-distance", 2 * steps, |h| {
+        h.give("mesh", mesh.clone()).set("distance", Literal::Number(900.0))
+    });
+    for (what, least) in [("component", steps), ("boundary-loop", 6)] {
+        stops(&catalogue, "select-nearest", least, |h| {
+            h.give("mesh", mesh.clone()).set("what", Literal::Choice(what.into()))
+        });
+    }
+    let sides = FaceNames::new((0..mesh.0.polygon_count()).map(|face| if face < 80_000 { "left" } else { "right" }));
+    let named = wire::Mesh::new(mesh.0.as_ref().clone().with_names(NamedBy::Group, sides).unwrap());
+    stops(&catalogue, "select-by-name", 3, |h| {
+        h.give("mesh", named.clone()).set("name", Literal::Text("right".into()))
     });
     stops(&catalogue, "mesh-out", 3 * 400 * 400 / 65_536 + 8, |h| h.give("mesh", mesh.clone()).examine());
 }

@@ -210,7 +210,7 @@ fn from_afar(painter: &egui::Painter, rect: egui::Rect, face: Face<'_>, visuals:
     let middle = rect.min + vec2(10.0 + 4.0 * scale, 7.0 + 0.5 * head);
     status_sign(painter, status, status_colour(status, visuals), middle, scale);
     let text = if node.is_muted() { visuals.weak_text_color() } else { visuals.strong_text_color() };
-    let size = title_size(zoom);
+    let size = title_size(zoom).min(if card.is_collapsed { 22.0 } else { f32::INFINITY });
     let left = middle.x + 7.0 * scale;
     let mut job = egui::text::LayoutJob::simple(node.name().to_owned(), egui::FontId::proportional(size), text, 0.0);
     // As much of it as the node has room for.

@@ -26,7 +26,9 @@ pub(super) struct Seen {
 /// Whether two pieces of lines cross.
 fn cross([a, b]: [Pos2; 2], [c, d]: [Pos2; 2]) -> bool {
     let side = |p: Pos2, q: Pos2, r: Pos2| (q - p).x * (r - p).y - (q - p).y * (r - p).x;
-    side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
+    // A point on the other line counts to one side of it, so that a cut through a point of a link is none too few.
+    let parted = |one: f32, other: f32| (one >= 0.0) != (other >= 0.0);
+    parted(side(a, b, c), side(a, b, d)) && parted(side(c, d, a), side(c, d, b))
 }
 
 fn windows(line: &[Pos2]) -> impl Iterator<Item = [Pos2; 2]> + '_ {
@@ -234,6 +236,7 @@ mod tests {
         let cut = |a: [f32; 2], b: [f32; 2]| seen.crossed(&[a.into(), b.into()]).len();
         assert_eq!(cut([5.0, -5.0], [5.0, 5.0]), 1);
         assert_eq!(cut([5.0, 1.0], [5.0, 5.0]), 0);
+        assert_eq!(cut([10.0, -5.0], [10.0, 5.0]), 1, "through a point of the link");
         assert_eq!(cut([15.0, -5.0], [15.0, 5.0]), 1);
         assert!(seen.under(Rect::from_min_max(Pos2::new(8.0, -2.0), Pos2::new(12.0, 2.0))).is_some());
     }

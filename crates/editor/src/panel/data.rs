@@ -114,6 +114,8 @@ impl Data {
         let order = order(table, sorted);
         let mut asked = None;
         let mut clicked = None;
+        // A picked row would have another one, which can't be read on its background.
+        let colour = ui.visuals().text_color();
         let mut builder = TableBuilder::new(ui).striped(true).auto_shrink(false).sense(egui::Sense::click());
         for _ in &table.columns {
             builder = builder.column(Column::auto().at_least(60.0).resizable(true));
@@ -146,7 +148,11 @@ impl Data {
                                 Cell::Number(number) => format!("{number:.6}"),
                                 Cell::Text(text) => text.clone(),
                             };
-                            ui.add(egui::Label::new(RichText::new(text).size(11.5)).selectable(false));
+                            ui.add(
+                                egui::Label::new(RichText::new(text).size(11.5).color(colour))
+                                    .selectable(false)
+                                    .extend(),
+                            );
                         });
                     }
                     let response = row.response();

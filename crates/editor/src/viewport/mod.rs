@@ -277,7 +277,7 @@ impl ViewPane {
             return;
         }
         #[expect(clippy::cast_possible_truncation, reason = "points of the screen")]
-        let tolerance = (context.settings.tolerance / self.camera.metres_per_point(view.size)) as f32;
+        let tolerance = (sketch_tool::tolerance(context, view) / self.camera.metres_per_point(view.size)) as f32;
         if (2.0..400.0).contains(&tolerance) {
             painter.circle_stroke(pointer, tolerance, egui::Stroke::new(1.0, accent.gamma_multiply(0.5)));
         }

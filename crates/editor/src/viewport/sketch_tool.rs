@@ -218,6 +218,11 @@ fn nearest_point(graph: &Graph, active: Option<NodeId>, view: &ToolView<'_>, at:
     best.map(|(_, gesture)| gesture)
 }
 
+/// How far a stroke may be from the pen, metres: as the artist set it, but no finer than the screen shows.
+pub(crate) fn tolerance(context: &PanelContext<'_>, view: &ToolView<'_>) -> f64 {
+    context.settings.tolerance.max(view.metres(1.0))
+}
+
 /// Makes a drawn line a part of the document.
 fn finish(
     context: &mut PanelContext<'_>,
@@ -244,7 +249,7 @@ fn finish(
         .map(|(point, pressure)| StrokePoint { pressure: *pressure, ..stroke_point(*point) })
         .collect();
     let closed = length > 4.0 * reach && drawn[0].distance(drawn[drawn.len() - 1]) < reach;
-    let tolerance = context.settings.tolerance;
+    let tolerance = tolerance(context, view);
     let strokes = target.as_ref().map(|target| target.strokes.clone()).unwrap_or_default();
     let (name, strokes) = match meaning(&strokes, &smoothed(&drawn, false, tolerance), reach) {
         Outcome::Instead(index, line, closed) => {

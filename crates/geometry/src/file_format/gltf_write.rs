@@ -1,4 +1,4 @@
-//! Scenes as glTF 2.0: one node, mesh and material an output, metres, +Y up.
+//! Scenes as glTF 2.0: one node and mesh an output, metres, +Y up.
 
 use base64::Engine as _;
 use gltf_json::validation::{Checked, USize64};
@@ -16,7 +16,9 @@ const FORMAT: &str = "glTF";
 
 /// The scene as binary glTF 2.0 (`.glb`).
 ///
-/// Each mesh output is one node, mesh, primitive of triangles and material (base colour in linear light). Corners that
+/// Each mesh output is one node, mesh, primitive of triangles and material (base colour in linear light); where a mesh
+/// names materials at its polygons, one primitive and material a name, which all look as the output's. Groups have no place
+/// in glTF. Corners that
 /// agree in vertex, normal and UV are one vertex; normals are of unit length in `f32`, and glTF's v runs downward.
 /// Quads are split along the shorter diagonal; triangles of which two corners are one vertex, as at poles, are left
 /// out. Each output of curves is one mesh of line strips and, for closed curves, line loops, under an unlit material.
@@ -117,13 +119,16 @@ impl Document {
 
     fn add_mesh(&mut self, item: &MeshItem, material_name: Option<String>) -> Result<(), WriteError> {
         let mut weld = CornerWeld::new(item, item.mesh.normals().is_some(), true);
-        let mut indices = Vec::new();
+        let names = item.mesh.materials();
+        // One primitive a name, in the order of their first use.
+        let mut parts: Vec<Vec<u32>> = vec![Vec::new(); names.map_or(1, |names| names.names().len())];
         for polygon in 0..item.mesh.polygon_count() {
+            let part = &mut parts[names.map_or(0, |names| names.places()[polygon] as usize)];
             for corner in sound_triangles(&item.mesh, polygon).into_iter().flatten() {
-                indices.push(weld.vertex(corner)?);
+                part.push(weld.vertex(corner)?);
             }
         }
-        if indices.is_empty() {
+        if parts.iter().all(Vec::is_empty) {
             return Err(WriteError::EmptyMesh { name: mesh_name(item).to_owned() });
         }
 
@@ -141,9 +146,14 @@ impl Document {
             let accessor = self.accessor(view, 0, weld.uvs.len(), float(), accessor::Type::Vec2);
             attributes.insert(Checked::Valid(mesh::Semantic::TexCoords(0)), accessor);
         }
-        let indices = self.indices(&indices, weld.positions.len());
-        let material = self.mesh_material(item, material_name)?;
-        self.add_node(mesh_name(item), vec![primitive(attributes, Some(indices), material, mesh::Mode::Triangles)]);
+        let mut primitives = Vec::new();
+        for (part, indices) in parts.iter().enumerate().filter(|(_, indices)| !indices.is_empty()) {
+            let indices = self.indices(indices, weld.positions.len());
+            let own = names.map(|names| names.names()[part].clone()).filter(|name| !name.is_empty());
+            let material = self.mesh_material(item, own.or_else(|| material_name.clone()))?;
+            primitives.push(primitive(attributes.clone(), Some(indices), material, mesh::Mode::Triangles));
+        }
+        self.add_node(mesh_name(item), primitives);
         Ok(())
     }
 

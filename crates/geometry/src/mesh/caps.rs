@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec2, DVec3};
 
+use super::face_names::carried;
 use super::topology::Topology;
 use super::{Mesh, MeshError, measure};
 use crate::curve::place;
@@ -212,7 +213,9 @@ fn joined(mesh: &Mesh, parts: MeshParts) -> Result<Mesh, MeshError> {
     if let Some(uvs) = mesh.uvs() {
         whole = whole.with_uvs([uvs, &parts.uvs].concat())?;
     }
-    Ok(whole)
+    let of_the_mesh = (0..mesh.polygon_count()).map(Some);
+    let sources: Vec<Option<usize>> = of_the_mesh.chain(parts.counts.iter().map(|_| None)).collect();
+    carried(whole, mesh, &sources)
 }
 
 fn fan(parts: &mut MeshParts, rim: &[u32], lid: &Lid, (centroid, centre_uv): (DVec3, DVec2)) {

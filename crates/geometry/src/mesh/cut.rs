@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use glam::{DVec2, DVec3};
 
 use super::curved_side::{CurvedSide, vertex_normals};
+use super::face_names::carried;
 use super::slice::Plane;
 use super::triangulate::polygon_triangles;
 use super::{Mesh, MeshError, measure};
@@ -51,6 +52,7 @@ pub(crate) fn cut(mesh: &Mesh, heights: &[f64], line: Line<'_>) -> Result<Mesh, 
         counts: Vec::new(),
         normals: Vec::new(),
         uvs: Vec::new(),
+        sources: Vec::new(),
     };
     let mut whole: Vec<usize> = Vec::new();
     for polygon in 0..mesh.polygon_count() {
@@ -70,11 +72,11 @@ pub(crate) fn cut(mesh: &Mesh, heights: &[f64], line: Line<'_>) -> Result<Mesh, 
             0 | 2 => {
                 whole.clear();
                 whole.extend(range);
-                cutter.polygon(&whole);
+                cutter.polygon(polygon, &whole);
             }
             _ => {
                 for triangle in polygon_triangles(mesh, polygon) {
-                    cutter.polygon(&triangle);
+                    cutter.polygon(polygon, &triangle);
                 }
             }
         }
@@ -104,6 +106,8 @@ struct Cutter<'a> {
     counts: Vec<usize>,
     normals: Vec<DVec3>,
     uvs: Vec<DVec2>,
+    /// The polygon that each new one comes from.
+    sources: Vec<Option<usize>>,
 }
 
 impl Cutter<'_> {
@@ -115,8 +119,8 @@ impl Cutter<'_> {
         self.heights[self.vertex(corner) as usize]
     }
 
-    /// Adds what remains of a polygon of these corners.
-    fn polygon(&mut self, corners: &[usize]) {
+    /// Adds what remains of a polygon, or of a part of it, with these corners.
+    fn polygon(&mut self, source: usize, corners: &[usize]) {
         // Taken for the time being, so that each polygon does not ask for memory of its own.
         let mut places = std::mem::take(&mut self.places);
         places.clear();
@@ -165,6 +169,7 @@ impl Cutter<'_> {
             }
         }
         self.counts.push(places.len());
+        self.sources.push(Some(source));
         self.places = places;
     }
 
@@ -213,6 +218,6 @@ impl Cutter<'_> {
         if self.mesh.uvs().is_some() {
             mesh = mesh.with_uvs(self.uvs)?;
         }
-        Ok(mesh.named(self.mesh.name()))
+        carried(mesh.named(self.mesh.name()), self.mesh, &self.sources)
     }
 }

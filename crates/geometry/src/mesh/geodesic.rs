@@ -8,6 +8,9 @@ use glam::DVec3;
 use super::distance::{MeshDistance, NoPolygons};
 use super::{Mesh, triangles};
 
+/// Vertices between two questions whether to go on.
+const STEP: usize = 4096;
+
 /// The triangles of a mesh, prepared to measure along them: made once, asked often.
 #[derive(Clone, Debug)]
 pub struct Geodesics {
@@ -48,6 +51,12 @@ impl Geodesics {
     /// parts without obtuse triangles they are exact to rounding; otherwise too long by a few per cent at most meshes,
     /// never more than the shortest way along edges. O(n log n).
     pub fn distances(&self, from: &[(u32, f64)], most: f64) -> Vec<f64> {
+        self.distances_while(from, most, &|_| true).unwrap_or_default()
+    }
+
+    /// The same, calling `progress` with about the fraction done; `None` where it answers `false`.
+    pub fn distances_while(&self, from: &[(u32, f64)], most: f64, progress: &dyn Fn(f64) -> bool) -> Option<Vec<f64>> {
+        let mut taken = 0_usize;
         let mut distances = vec![f64::INFINITY; self.points.len()];
         let mut open = BinaryHeap::new();
         for &(vertex, start) in from {
@@ -60,6 +69,10 @@ impl Geodesics {
             if distance > distances[vertex as usize] || distance > most {
                 continue;
             }
+            if taken.is_multiple_of(STEP) && !progress((taken as f64 / self.points.len() as f64).min(1.0)) {
+                return None;
+            }
+            taken += 1;
             let star = &self.others[self.starts[vertex as usize]..self.starts[vertex as usize + 1]];
             for [left, right] in star {
                 for (to, over) in [(*left, *right), (*right, *left)] {
@@ -74,7 +87,7 @@ impl Geodesics {
             }
         }
         distances.iter_mut().filter(|d| **d > most).for_each(|d| *d = f64::INFINITY);
-        distances
+        Some(distances)
     }
 
     /// Distance of `to` by way of the edge from `a` to `b`, or along the edge from `a`.

@@ -1,14 +1,17 @@
 //! A polygon mesh with attributes at its corners.
 
+use std::sync::Arc;
+
 use glam::{DVec2, DVec3};
 
 use super::boundary_loops::KeptLoops;
+use super::face_names::{FaceNames, NamedBy};
 
 /// Polygons over shared vertices. A *corner* is one vertex of one polygon; UVs and normals live at the corners, so
 /// that a seam or a hard edge needs no doubled vertex and the mesh stays closed.
 ///
 /// Invariants, kept by the constructor: every polygon has three or more corners, every index is in range, every
-/// coordinate is finite, attributes have one entry a corner.
+/// coordinate is finite, attributes have one entry a corner, names one a polygon.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     name: String,
@@ -19,6 +22,8 @@ pub struct Mesh {
     starts: Vec<u32>,
     normals: Option<Vec<DVec3>>,
     uvs: Option<Vec<DVec2>>,
+    groups: Option<Arc<FaceNames>>,
+    materials: Option<Arc<FaceNames>>,
     pub(super) kept_loops: KeptLoops,
 }
 
@@ -61,6 +66,14 @@ pub enum MeshError {
         /// Corners of the mesh.
         corners: usize,
     },
+    /// Names for another number of polygons.
+    #[error("{found} names given for {polygons} polygons")]
+    NameCount {
+        /// Names found.
+        found: usize,
+        /// Polygons of the mesh.
+        polygons: usize,
+    },
     /// Positions for another mesh.
     #[error("{found} positions given for {vertices} vertices")]
     PositionCount {
@@ -77,19 +90,25 @@ pub enum MeshError {
 impl Default for Mesh {
     /// A mesh without vertices and polygons.
     fn default() -> Self {
-        Self {
-            name: String::new(),
-            positions: vec![],
-            corners: vec![],
-            starts: vec![0],
-            normals: None,
-            uvs: None,
-            kept_loops: KeptLoops::default(),
-        }
+        Self::bare(vec![], vec![], vec![0])
     }
 }
 
 impl Mesh {
+    fn bare(positions: Vec<DVec3>, corners: Vec<u32>, starts: Vec<u32>) -> Self {
+        Self {
+            name: String::new(),
+            positions,
+            corners,
+            starts,
+            normals: None,
+            uvs: None,
+            groups: None,
+            materials: None,
+            kept_loops: KeptLoops::default(),
+        }
+    }
+
     /// Makes a mesh from vertices and polygons (each a list of vertex indices, counter-clockwise seen from outside).
     ///
     /// # Errors
@@ -117,15 +136,7 @@ impl Mesh {
             corners.extend_from_slice(indices);
             starts.push(u32::try_from(corners.len()).map_err(|_| MeshError::TooLarge)?);
         }
-        Ok(Self {
-            name: String::new(),
-            positions,
-            corners,
-            starts,
-            normals: None,
-            uvs: None,
-            kept_loops: KeptLoops::default(),
-        })
+        Ok(Self::bare(positions, corners, starts))
     }
 
     /// Makes a mesh from vertices, the vertex indices of all polygons one behind the other, and the number of corners of
@@ -165,15 +176,7 @@ impl Mesh {
             let polygon = starts.partition_point(|start| *start as usize <= corner) - 1;
             return Err(MeshError::IndexOutOfRange { polygon, vertex: corners[corner], vertices: positions.len() });
         }
-        Ok(Self {
-            name: String::new(),
-            positions,
-            corners,
-            starts,
-            normals: None,
-            uvs: None,
-            kept_loops: KeptLoops::default(),
-        })
+        Ok(Self::bare(positions, corners, starts))
     }
 
     /// The same mesh under a name.
@@ -183,7 +186,7 @@ impl Mesh {
         self
     }
 
-    /// The same polygons, name and UVs over other positions, and other normals where some are given; without, there are
+    /// The same polygons, names and UVs over other positions, and other normals where some are given; without, there are
     /// none.
     ///
     /// # Errors
@@ -203,6 +206,8 @@ impl Mesh {
             starts: self.starts.clone(),
             normals: None,
             uvs: self.uvs.clone(),
+            groups: self.groups.clone(),
+            materials: self.materials.clone(),
             kept_loops: self.kept_loops.clone(),
         };
         match normals {
@@ -243,6 +248,34 @@ impl Mesh {
         }
         self.uvs = Some(uvs);
         Ok(self)
+    }
+
+    /// The same mesh with a group or material name at each polygon.
+    ///
+    /// What moves, turns, mirrors, joins, cuts, parts, welds and caps meshes carries them along, and new polygons have an empty
+    /// name; where a border is resampled, and where a mesh is made anew, they are gone.
+    ///
+    /// # Errors
+    /// [`MeshError::NameCount`] where their number is not that of the polygons.
+    pub fn with_names(mut self, by: NamedBy, names: FaceNames) -> Result<Self, MeshError> {
+        if names.len() != self.polygon_count() {
+            return Err(MeshError::NameCount { found: names.len(), polygons: self.polygon_count() });
+        }
+        let names = Some(Arc::new(names));
+        match by {
+            NamedBy::Group => self.groups = names,
+            NamedBy::Material => self.materials = names,
+        }
+        Ok(self)
+    }
+
+    /// The same mesh with the groups and materials of another one, polygon by polygon; those of `mesh` must be as many.
+    pub(crate) fn named_like(mut self, mesh: &Self) -> Self {
+        if mesh.polygon_count() == self.polygon_count() {
+            self.groups.clone_from(&mesh.groups);
+            self.materials.clone_from(&mesh.materials);
+        }
+        self
     }
 
     /// Name; may be empty.
@@ -288,6 +321,16 @@ impl Mesh {
     /// Unit normal of each corner, where there are normals.
     pub fn normals(&self) -> Option<&[DVec3]> {
         self.normals.as_deref()
+    }
+
+    /// The group of each polygon, where there are groups.
+    pub fn groups(&self) -> Option<&FaceNames> {
+        self.groups.as_deref()
+    }
+
+    /// The name of each polygon's material, where there are some.
+    pub fn materials(&self) -> Option<&FaceNames> {
+        self.materials.as_deref()
     }
 
     /// UV of each corner, where there are UVs.

@@ -2,6 +2,7 @@
 
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 
+use super::face_names::{FaceNames, NamedBy, names_of};
 use super::{Mesh, MeshError, measure};
 
 /// Corners between two questions whether to go on.
@@ -106,7 +107,8 @@ pub fn flipped(mesh: &Mesh) -> Result<Mesh, MeshError> {
 
 /// Puts meshes into one, in order: vertices behind vertices, polygons behind polygons.
 ///
-/// Where only some have normals, the others get those of their polygons; where only some have UVs, the others get zero.
+/// Where only some have normals, the others get those of their polygons; where only some have UVs, the others get zero;
+/// where only some have groups or materials, the others get empty names.
 /// The name is that of the first mesh.
 ///
 /// # Errors
@@ -183,6 +185,15 @@ fn joined<'a, E: From<MeshError>>(
         ask(0.9)?;
         joined = joined.with_uvs(uvs)?;
     }
+    for by in NamedBy::ALL {
+        if meshes.iter().any(|m| names_of(m, by).is_some()) {
+            let names = meshes.iter().flat_map(|mesh| {
+                let names = names_of(mesh, by);
+                (0..mesh.polygon_count()).map(move |polygon| names.map_or("", |names| names.name(polygon)))
+            });
+            joined = joined.with_names(by, FaceNames::new(names))?;
+        }
+    }
     ask(1.0)?;
     Ok(joined)
 }
@@ -224,7 +235,7 @@ fn turned<E: From<MeshError>>(mesh: &Mesh, ask: &dyn Fn(f64) -> Result<(), E>) -
         turned = turned.with_uvs(reversed)?;
     }
     ask(1.0)?;
-    Ok(turned)
+    Ok(turned.named_like(mesh))
 }
 
 /// The polygons and name of a mesh with other data.
@@ -242,7 +253,7 @@ fn rebuild(
     if let Some(uvs) = uvs {
         rebuilt = rebuilt.with_uvs(uvs)?;
     }
-    Ok(rebuilt)
+    Ok(rebuilt.named_like(mesh))
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ enum Quality {
     Full,
     Quick,
     Converged,
+    Unturned,
 }
 
 impl Choices for Quality {
@@ -22,6 +23,11 @@ impl Choices for Quality {
             "the first system alone, as while dragging: large turns shear, and normals are left out",
         ),
         (Self::Converged, "converged", "the second system again and again, until nothing moves"),
+        (
+            Self::Unturned,
+            "unturned",
+            "the second system with detail as it was: plain Laplacian editing, to compare with; bends collapse",
+        ),
     ];
 }
 
@@ -74,9 +80,13 @@ pub(crate) fn kind() -> NodeKind {
         let progress = ports.progress_callback();
         let (binding, transforms) = (&prepared.binding, holding.transforms());
         let limit = match ports.choice(quality) {
-            Quality::Quick => {
+            quality @ (Quality::Quick | Quality::Unturned) => {
                 ports.progress(0.0)?;
-                let points = binding.drag(&transforms).at(handles)?;
+                let points = match quality {
+                    Quality::Unturned => binding.without_turning(&transforms),
+                    _ => binding.drag(&transforms),
+                };
+                let points = points.at(handles)?;
                 let mesh = binding.mesh().with_positions(points, None).at(handles)?;
                 ports.figure(farthest, largest_move(binding.mesh(), &mesh));
                 ports.write(deformed, wire::Mesh::new(mesh));

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use maquette_geometry::mesh::select::{SelectError, geodesic};
-use maquette_graph::{AtPort, NodeKind, Unit};
+use maquette_graph::{AtPort, NodeError, NodeKind, Unit};
 
 use crate::selecting::SelectionOutput;
 use crate::wire;
@@ -31,12 +31,13 @@ pub(crate) fn kind() -> NodeKind {
             Some(curves) => curves.0.iter().flat_map(|curve| curve.points()).copied().collect(),
             None => vec![DVec3::from_array(ports.read(point).0)],
         };
-        ports.progress(0.1)?;
-        let weights = match geodesic(body, &from, ports.value(distance), ports.value(falloff)) {
-            Err(error @ SelectError::NoPolygons) => Err(error).at(mesh),
-            Err(error @ SelectError::NoPoint) => Err(error).at(curve),
-            weights => weights.at(distance),
-        }?;
+        let weights =
+            match geodesic(body, &from, ports.value(distance), ports.value(falloff), &ports.progress_callback()) {
+                Err(error @ SelectError::NoPolygons) => Err(error).at(mesh),
+                Err(error @ SelectError::NoPoint) => Err(error).at(curve),
+                weights => weights.at(distance),
+            }?;
+        let Some(weights) = weights else { return Err(NodeError::Cancelled) };
         let mesh_hash = ports.content_hash(mesh);
         let selection = wire::Selection { weights: weights.into(), mesh: body.clone(), mesh_hash };
         output.write(ports, selection, "raise the distance");

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use maquette_geometry::mesh::select::{SelectError, by_normal};
-use maquette_graph::{AtPort, NodeKind, Unit};
+use maquette_graph::{AtPort, NodeError, NodeKind, Unit};
 
 use crate::selecting::SelectionOutput;
 use crate::wire;
@@ -23,10 +23,11 @@ pub(crate) fn kind() -> NodeKind {
         let body = &ports.read(mesh).0;
         let towards = DVec3::from_array(ports.read(direction).0);
         let (within, over) = (ports.value(angle).to_radians(), ports.value(falloff).to_radians());
-        let weights = match by_normal(body, towards, within, over) {
+        let weights = match by_normal(body, towards, within, over, &ports.progress_callback()) {
             Err(error @ SelectError::Negative { .. }) => Err(error).at(angle),
             weights => weights.at(direction),
         }?;
+        let Some(weights) = weights else { return Err(NodeError::Cancelled) };
         let mesh_hash = ports.content_hash(mesh);
         let selection = wire::Selection { weights: weights.into(), mesh: body.clone(), mesh_hash };
         output.write(ports, selection, "raise the angle, or turn the direction round");

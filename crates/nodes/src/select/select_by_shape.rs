@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3, EulerRot};
 use maquette_geometry::mesh::select::{SelectError, Shape, by_shape};
-use maquette_graph::{AtPort, Choices, Input, NodeKind, Unit, Vector};
+use maquette_graph::{AtPort, Choices, Input, NodeError, NodeKind, Unit, Vector};
 
 use crate::selecting::SelectionOutput;
 use crate::wire;
@@ -73,10 +73,11 @@ pub(crate) fn kind() -> NodeKind {
                 None => return Err("a tube needs a curve in its middle: link one").at(curve),
             },
         };
-        let weights = match by_shape(&ports.read(mesh).0, &made, ports.value(falloff)) {
+        let weights = match by_shape(&ports.read(mesh).0, &made, ports.value(falloff), &ports.progress_callback()) {
             Err(error @ SelectError::NoDirection) => Err(error).at(normal),
             weights => weights.at(shape),
         }?;
+        let Some(weights) = weights else { return Err(NodeError::Cancelled) };
         let selection = wire::Selection {
             weights: weights.into(),
             mesh: ports.read(mesh).0.clone(),

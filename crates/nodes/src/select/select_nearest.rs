@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use maquette_geometry::mesh::select::{SelectError, boundary_loop_nearest, component_nearest};
-use maquette_graph::{AtPort, Choices, NodeKind, Unit};
+use maquette_graph::{AtPort, Choices, NodeError, NodeKind, Unit};
 
 use crate::selecting::SelectionOutput;
 use crate::wire;
@@ -34,15 +34,17 @@ pub(crate) fn kind() -> NodeKind {
     node.evaluate(move |ports| {
         let body = &ports.read(mesh).0;
         let near = DVec3::from_array(ports.read(point).0);
+        let progress = ports.progress_callback();
         let weights = match ports.choice(what) {
-            What::Component => component_nearest(body, near),
-            What::BoundaryLoop => boundary_loop_nearest(body, near),
+            What::Component => component_nearest(body, near, &progress),
+            What::BoundaryLoop => boundary_loop_nearest(body, near, &progress),
         };
         let weights = match weights {
             Err(error @ SelectError::NoPolygons) => Err(error).at(mesh),
             Err(error @ SelectError::NoBoundary) => Err(error).at(what),
             weights => weights.at(point),
         }?;
+        let Some(weights) = weights else { return Err(NodeError::Cancelled) };
         let mesh_hash = ports.content_hash(mesh);
         let selection = wire::Selection { weights: weights.into(), mesh: body.clone(), mesh_hash };
         output.write(ports, selection, "give another point");

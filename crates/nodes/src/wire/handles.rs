@@ -167,7 +167,7 @@ impl Wire for Bound {
 
     fn byte_size(&self) -> usize {
         let report = self.binding.report();
-        mesh_bytes(self.binding.mesh()) + report.factor_bytes + BYTES_A_VERTEX * report.free
+        mesh_bytes(self.binding.mesh()) + report.factor_bytes + report.influence_bytes + BYTES_A_VERTEX * report.free
     }
 
     fn summary(&self) -> String {

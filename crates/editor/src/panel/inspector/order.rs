@@ -138,14 +138,14 @@ pub(super) fn show(
 }
 
 fn is_false(cell: &Cell) -> bool {
-    cell.to_string() == "false"
+    cell.to_string() == "no"
 }
 
 /// A cell in words; of what is true, its name says it.
 fn said(name: &str, cell: &Cell) -> String {
     match cell {
         Cell::Number(number) => format!("{name} {number:.1}"),
-        Cell::Text(text) if text == "true" => name.to_owned(),
+        Cell::Text(text) if text == "yes" => name.to_owned(),
         Cell::Text(text) => format!("{name} {text}"),
     }
 }
@@ -188,6 +188,13 @@ mod tests {
         assert_eq!(moved(&names, 2, 0), ["c", "a", "b"]);
         assert_eq!(moved(&names, 1, 1), ["a", "b", "c"]);
         assert_eq!(moved(&names, 7, 0), ["a", "b", "c"]);
+    }
+
+    #[test]
+    fn what_is_not_so_is_not_said() {
+        assert!(is_false(&Cell::from(false)) && !is_false(&Cell::from(true)));
+        assert_eq!(said("reversed", &Cell::from(true)), "reversed");
+        assert_eq!(said("angle", &Cell::from(35.64)), "angle 35.6");
     }
 
     #[test]

@@ -7,6 +7,7 @@ use glam::{DMat3, DVec3};
 use super::error::{BindError, DeformError, REGION};
 use super::handle::{HandleTransform, Holds};
 use super::implicit::Implicit;
+use super::influence::Influence;
 use super::options::{BindOptions, BindReport, DeformOptions, Deformed, Features, Handle, Passes};
 use super::patch::{Holder, Patch};
 use super::polar::{nearest_rotation, uniform_scale};
@@ -45,6 +46,8 @@ pub struct Binding {
 struct Systems {
     implicit: Implicit,
     reconstruct: Reconstruct,
+    /// What handles do by the first system, made when they first move; None where solving each time is cheaper.
+    influence: OnceLock<Option<Result<Influence, DeformError>>>,
 }
 
 impl Binding {
@@ -112,7 +115,8 @@ impl Binding {
             let reconstruct = Reconstruct::new(&patch, options.reconstruction, &weights, &areas, &part(0.8, 1.0))?;
             (report.degenerate, report.widened) = implicit.degenerate();
             report.factor_bytes = implicit.bytes() + reconstruct.bytes();
-            Some(Systems { implicit, reconstruct })
+            report.influence_bytes = Influence::bytes(&patch, &implicit, handles.len()).unwrap_or(0);
+            Some(Systems { implicit, reconstruct, influence: OnceLock::new() })
         };
         let diagonal = measure::points_diagonal(&patch.points);
         Ok(Self { mesh, handles: lists, patch, systems, winding: OnceLock::new(), diagonal, report })
@@ -131,20 +135,37 @@ impl Binding {
     /// Positions of all vertices for one transform a handle, by the first system alone: quick, for as long as a handle is
     /// dragged; large turns shear. Handles that wind turn by the shorter way round.
     ///
+    /// With up to 16 handles, the first call solves for what each handle does, and those after it only add up.
+    ///
     /// # Errors
     /// [`DeformError`] for another number of transforms, and for those that are not finite, mirror or flatten.
     pub fn drag(&self, transforms: &[HandleTransform]) -> Result<Vec<DVec3>, DeformError> {
         let moved = self.moved(transforms)?;
         let Some(systems) = &self.systems else { return Ok(self.positions(transforms, &[])) };
+        let displacements = self.implicitly(systems, transforms, &moved)?;
         let prescribed = |vertex: usize| moved.gradient(&self.patch, vertex) - DMat3::IDENTITY;
-        let mut displacements = self.held(transforms);
-        systems.implicit.solve(&self.patch, &mut displacements, &prescribed, false)?;
-        let gradients = systems.implicit.gradients(&displacements, &prescribed);
-        let points = systems.implicit.undisplace(&self.patch, &gradients, &displacements);
+        let points = systems.implicit.undisplace(&self.patch, &displacements, &prescribed);
         Ok(self.positions(transforms, &points))
     }
 
-    /// The mesh for one transform a handle.
+    /// Positions of all vertices for one transform a handle, whose Laplacian coordinates are those of the mesh at rest,
+    /// not turned along: plain Laplacian editing, by the second system alone. Detail keeps its direction where the surface
+    /// turns, and bends collapse; this is there to be compared with.
+    ///
+    /// # Errors
+    /// [`DeformError`] as [`Binding::drag`].
+    pub fn without_turning(&self, transforms: &[HandleTransform]) -> Result<Vec<DVec3>, DeformError> {
+        self.moved(transforms)?;
+        let Some(systems) = &self.systems else { return Ok(self.positions(transforms, &[])) };
+        let mut displacements = self.held(transforms);
+        let still = vec![DMat3::IDENTITY; self.patch.len()];
+        systems.reconstruct.solve(&self.patch, &still, &mut displacements)?;
+        let points: Vec<DVec3> = self.patch.points.iter().zip(&displacements).map(|(p, u)| *p + *u).collect();
+        Ok(self.positions(transforms, &points))
+    }
+
+    /// The mesh for one transform a handle. Normals turn along; one that would look away from its polygon becomes the
+    /// polygon's.
     ///
     /// `progress` is called with the fraction done.
     ///
@@ -174,9 +195,8 @@ impl Binding {
         let gradients = if wound {
             self.interpolated(transforms, &moved)?
         } else {
-            let mut displacements = self.held(transforms);
+            let displacements = self.implicitly(systems, transforms, &moved)?;
             let less = |vertex: usize| prescribed(vertex) - DMat3::IDENTITY;
-            systems.implicit.solve(patch, &mut displacements, &less, true)?;
             let mut gradients = systems.implicit.gradients(&displacements, &less);
             gradients.iter_mut().for_each(|m| *m += DMat3::IDENTITY);
             gradients
@@ -231,6 +251,36 @@ impl Binding {
             transform.check().map_err(|source| DeformError::Handle { handle, source })?;
         }
         Ok(Moved { linear: transforms.iter().map(HandleTransform::linear).collect() })
+    }
+
+    /// Displacements of the patch by the first system.
+    fn implicitly(
+        &self,
+        systems: &Systems,
+        transforms: &[HandleTransform],
+        moved: &Moved,
+    ) -> Result<Vec<DVec3>, DeformError> {
+        let Systems { implicit, influence, .. } = systems;
+        let (patch, handles) = (&self.patch, self.handles.len());
+        let mut displacements = self.held(transforms);
+        let made = influence.get_or_init(|| {
+            Influence::bytes(patch, implicit, handles).map(|_| Influence::new(patch, implicit, handles))
+        });
+        match made {
+            Some(Ok(influence)) => {
+                let shift_of = |handle: usize, point: DVec3| transforms[handle].apply(point) - point;
+                influence.apply(&moved.linear, &shift_of, &mut displacements);
+                if !displacements.iter().all(|u| u.is_finite()) {
+                    return Err(DeformError::Overflow);
+                }
+            }
+            Some(Err(error)) => return Err(error.clone()),
+            None => {
+                let prescribed = |vertex: usize| moved.gradient(patch, vertex) - DMat3::IDENTITY;
+                implicit.solve(patch, &mut displacements, &prescribed)?;
+            }
+        }
+        Ok(displacements)
     }
 
     /// Displacements of the held vertices of the patch; 0 for the free ones.
@@ -307,7 +357,20 @@ impl Binding {
                 turns[*vertex as usize] = Some(*turn);
             }
             let corners = self.mesh.corners().iter().zip(normals);
-            corners.map(|(v, n)| turns[*v as usize].map_or(*n, |turn| (turn * *n).normalize_or(*n))).collect()
+            let mut turned: Vec<DVec3> =
+                corners.map(|(v, n)| turns[*v as usize].map_or(*n, |turn| (turn * *n).normalize_or(*n))).collect();
+            // Where a bend crowds the surface, a polygon may lie back farther than the vertex turned: it lends its own.
+            for (polygon, corners) in self.mesh.polygons().enumerate() {
+                if corners.iter().any(|v| turns[*v as usize].is_some()) {
+                    let own = measure::vector_area(corners.iter().map(|v| positions[*v as usize]));
+                    for corner in self.mesh.corner_range(polygon) {
+                        if turned[corner].dot(own) <= 0.0 {
+                            turned[corner] = own.normalize_or(turned[corner]);
+                        }
+                    }
+                }
+            }
+            turned
         });
         self.mesh.with_positions(positions, normals).map_err(|_| DeformError::Overflow)
     }

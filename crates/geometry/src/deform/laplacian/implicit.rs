@@ -38,24 +38,22 @@ impl Implicit {
         let go_on = |done: f64| if progress(done) { Ok(()) } else { Err(BindError::Stopped) };
         go_on(0.0)?;
         let free = patch.free;
-        let made: Vec<(Vec<(u32, f64)>, DVec3)> = (0..free)
-            .into_par_iter()
-            .map(|vertex| laplacian_row(patch, &gradients, vertex, &weights[vertex], areas[vertex]))
-            .collect();
-        let (rows, coordinates): (Vec<_>, Vec<_>) = made.into_iter().unzip();
-        let laplacians = Rows::collect(rows);
+        let coordinate = |vertex: usize| coordinate(patch, &gradients, vertex, &weights[vertex], areas[vertex]);
+        let coordinates: Vec<DVec3> = (0..free).into_par_iter().with_min_len(1024).map(coordinate).collect();
+        let laplacians = Rows::build(free, Vec::new, |entries, vertex, rows| {
+            laplacian_row(patch, &gradients, vertex, &weights[vertex], areas[vertex], coordinates[vertex], entries);
+            rows.push(entries.iter().copied());
+        });
         go_on(0.1)?;
-        let pairs: Vec<Vec<(u32, ())>> = (0..patch.len())
-            .into_par_iter()
-            .map(|vertex| {
-                if !gradients.wanted[vertex] {
-                    return Vec::new();
-                }
-                let others = patch.adjacency.within(vertex as u32, 2).into_iter();
-                others.filter(|other| vertex < free || (*other as usize) < free).map(|other| (other, ())).collect()
-            })
-            .collect();
-        let pairs = Rows::collect(pairs);
+        let scratch = || (vec![u32::MAX; patch.len()], Vec::new());
+        let pairs = Rows::build(patch.len(), scratch, |(seen, near), vertex, rows| {
+            near.clear();
+            if gradients.wanted[vertex] {
+                within_two(patch, vertex as u32, seen, near);
+            }
+            let counts = near.iter().filter(|other| vertex < free || (**other as usize) < free);
+            rows.push(counts.map(|other| (*other, ())));
+        });
         let feels = |vertex: usize| {
             !gradients.wanted[vertex] || gradients.rows.columns(vertex).last().is_some_and(|k| *k as usize >= free)
         };
@@ -80,7 +78,8 @@ impl Implicit {
         )?;
         drop((differences, gradient_columns, laplacian_columns));
         go_on(0.6)?;
-        let factor = Cholesky::factor(&matrix)?;
+        // Gradients of two rings are compared, each of which takes in another ring.
+        let factor = Cholesky::factor_along(&matrix, &patch.graph(4))?;
         go_on(1.0)?;
         Ok(Self { gradients, laplacians, coordinates, pairs, rim, factor })
     }
@@ -98,52 +97,79 @@ impl Implicit {
     /// Solves for where the handles are. `displacements` of the held vertices are given, those of the free ones are found;
     /// `prescribed` are the gradients less the identity, used where one is held.
     ///
-    /// With `refine` the residual of all rows is solved for once more, which takes as long again and makes up for what
-    /// the square of the rows' condition loses.
+    /// The residual of all rows is solved for once more, which takes as long again and makes up for what the square of
+    /// the rows' condition loses.
     pub fn solve(
         &self,
         patch: &Patch,
-        displacements: &mut [DVec3],
+        displacements: &mut Vec<DVec3>,
         prescribed: &(dyn Fn(usize) -> DMat3 + Sync),
-        refine: bool,
     ) -> Result<(), DeformError> {
-        displacements[..patch.free].fill(DVec3::ZERO);
-        for again in 0..1 + usize::from(refine) {
-            let mut sides = self.descent(patch, displacements, prescribed, again == 0);
-            self.factor.solve_points(&mut sides)?;
-            for (displacement, more) in displacements.iter_mut().zip(sides) {
-                *displacement += more;
+        self.solve_all(patch, std::slice::from_mut(displacements), &|_, vertex| prescribed(vertex))
+    }
+
+    /// The same for several problems at once, which come cheaper together; `prescribed` gets the problem and the vertex.
+    pub fn solve_all(
+        &self,
+        patch: &Patch,
+        problems: &mut [Vec<DVec3>],
+        prescribed: &(dyn Fn(usize, usize) -> DMat3 + Sync),
+    ) -> Result<(), DeformError> {
+        let free = patch.free;
+        problems.iter_mut().for_each(|displacements| displacements[..free].fill(DVec3::ZERO));
+        for at_rest in [true, false] {
+            let mut sides = Vec::with_capacity(3 * free * problems.len());
+            for (problem, displacements) in problems.iter().enumerate() {
+                let points = self.descent(patch, displacements, &|vertex| prescribed(problem, vertex), at_rest);
+                (0..3).for_each(|axis| sides.extend(points.iter().map(|p| p[axis])));
+            }
+            self.factor.solve(&mut sides)?;
+            for (displacements, found) in problems.iter_mut().zip(sides.chunks_exact((3 * free).max(1))) {
+                for (vertex, displacement) in displacements[..free].iter_mut().enumerate() {
+                    *displacement += DVec3::from([0, 1, 2].map(|axis| found[axis * free + vertex]));
+                }
             }
         }
-        if displacements.iter().all(|u| u.is_finite()) { Ok(()) } else { Err(DeformError::Overflow) }
+        if problems.iter().flatten().all(|u| u.is_finite()) { Ok(()) } else { Err(DeformError::Overflow) }
     }
 
     /// The deformation gradients less the identity at all vertices that have one.
     pub fn gradients(&self, displacements: &[DVec3], prescribed: &(dyn Fn(usize) -> DMat3 + Sync)) -> Vec<DMat3> {
-        let rows = &self.gradients.rows;
-        let of = |vertex: usize| {
-            if !self.gradients.wanted[vertex] {
-                return prescribed(vertex);
-            }
-            // Sums over the three columns, written out: this is what dragging waits for.
-            let (mut x, mut y, mut z) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
-            for (k, c) in rows.row(vertex) {
-                let u = displacements[k];
-                x += u * c.x;
-                y += u * c.y;
-                z += u * c.z;
-            }
-            DMat3::from_cols(x, y, z)
-        };
-        (0..rows.len()).into_par_iter().with_min_len(1024).map(of).collect()
+        let of = |vertex: usize| self.gradient(vertex, displacements, prescribed);
+        (0..self.gradients.rows.len()).into_par_iter().with_min_len(1024).map(of).collect()
     }
 
-    /// The positions of the mesh itself where the displacements are those of the displaced one (below 2.9).
-    pub fn undisplace(&self, patch: &Patch, gradients: &[DMat3], displacements: &[DVec3]) -> Vec<DVec3> {
-        let shifted = &self.gradients.points;
-        (0..patch.len())
-            .map(|v| patch.points[v] + displacements[v] + gradients[v] * (patch.points[v] - shifted[v]))
-            .collect()
+    fn gradient(&self, vertex: usize, displacements: &[DVec3], prescribed: &(dyn Fn(usize) -> DMat3 + Sync)) -> DMat3 {
+        if !self.gradients.wanted[vertex] {
+            return prescribed(vertex);
+        }
+        // Sums over the three columns, written out: many wait for this.
+        let (mut x, mut y, mut z) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
+        for (k, c) in self.gradients.rows.row(vertex) {
+            let u = displacements[k];
+            x += u * c.x;
+            y += u * c.y;
+            z += u * c.z;
+        }
+        DMat3::from_cols(x, y, z)
+    }
+
+    /// The positions of the mesh itself where the displacements are those of the displaced one (below 2.9); `prescribed` as
+    /// for [`Implicit::gradients`].
+    pub fn undisplace(
+        &self,
+        patch: &Patch,
+        displacements: &[DVec3],
+        prescribed: &(dyn Fn(usize) -> DMat3 + Sync),
+    ) -> Vec<DVec3> {
+        let mut points: Vec<DVec3> = patch.points.iter().zip(displacements).map(|(p, u)| *p + *u).collect();
+        for (vertex, point) in points.iter_mut().enumerate() {
+            let back = patch.points[vertex] - self.gradients.points[vertex];
+            if back != DVec3::ZERO {
+                *point += self.gradient(vertex, displacements, prescribed) * back;
+            }
+        }
+        points
     }
 
     /// Minus half the derivative of the sum of squares after the positions of the free vertices; `at_rest` where these are
@@ -190,29 +216,41 @@ impl Implicit {
     }
 }
 
-/// The row of (2.6) and `sqrt(A) delta`, with the weights of the mesh and the positions of the displaced one.
+/// `sqrt(A) delta`, with the weights of the mesh and the positions of the displaced one.
+fn coordinate(patch: &Patch, gradients: &Gradients, vertex: usize, weights: &[f64], area: f64) -> DVec3 {
+    if area <= 0.0 {
+        return DVec3::ZERO;
+    }
+    let own = gradients.points[vertex];
+    let ring = patch.adjacency.ring(vertex as u32);
+    let arms = ring.iter().zip(weights).map(|(k, w)| *w * (own - gradients.points[*k as usize]));
+    arms.sum::<DVec3>() / area.sqrt()
+}
+
+/// The row of (2.6), with the same, put in the place of `entries`.
 fn laplacian_row(
     patch: &Patch,
     gradients: &Gradients,
     vertex: usize,
     weights: &[f64],
     area: f64,
-) -> (Vec<(u32, f64)>, DVec3) {
-    let ring = patch.adjacency.ring(vertex as u32);
+    coordinate: DVec3,
+    entries: &mut Vec<(u32, f64)>,
+) {
+    entries.clear();
     if area <= 0.0 {
-        return (Vec::new(), DVec3::ZERO);
+        return;
     }
     let scale = 1.0 / area.sqrt();
-    let own = gradients.points[vertex];
-    let arms = ring.iter().zip(weights).map(|(k, w)| *w * (own - gradients.points[*k as usize]));
-    let coordinate = scale * arms.sum::<DVec3>();
+    let ring = patch.adjacency.ring(vertex as u32);
     let total: f64 = weights.iter().sum();
-    let mut entries: Vec<(u32, f64)> = ring.iter().zip(weights).map(|(k, w)| (*k, -scale * w)).collect();
+    entries.extend(ring.iter().zip(weights).map(|(k, w)| (*k, -scale * w)));
     entries.push((vertex as u32, scale * total));
     if gradients.wanted[vertex] {
         entries.extend(gradients.rows.row(vertex).map(|(k, c)| (k as u32, -c.dot(coordinate))));
     }
-    entries.sort_unstable_by_key(|(k, _)| *k);
+    // Stable, so that equal columns are summed in one order.
+    entries.sort_by_key(|(k, _)| *k);
     entries.dedup_by(|from, to| {
         let same = from.0 == to.0;
         if same {
@@ -220,19 +258,32 @@ fn laplacian_row(
         }
         same
     });
-    (entries, coordinate)
+}
+
+/// The vertices within two edges, ascending, without the vertex itself; `seen` holds for each vertex the one for which it
+/// was last found.
+fn within_two(patch: &Patch, vertex: u32, seen: &mut [u32], near: &mut Vec<u32>) {
+    seen[vertex as usize] = vertex;
+    for &beside in patch.adjacency.ring(vertex) {
+        if std::mem::replace(&mut seen[beside as usize], vertex) != vertex {
+            near.push(beside);
+        }
+        for &next in patch.adjacency.ring(beside) {
+            if std::mem::replace(&mut seen[next as usize], vertex) != vertex {
+                near.push(next);
+            }
+        }
+    }
+    near.sort_unstable();
 }
 
 /// `sum_j (M_i - M_j)` over the pairs of each vertex, as rows over the free vertices.
 fn differences(rows: &Rows<DVec3>, pairs: &Rows<()>, free: usize) -> Rows<DVec3> {
     // A value for each column, the row that last used it, and the columns of this row.
-    let empty = || (vec![DVec3::ZERO; free], vec![u32::MAX; free], Vec::<u32>::new());
-    let row = |(values, used, columns): &mut (Vec<DVec3>, Vec<u32>, Vec<u32>), vertex: usize| {
+    let scratch = || (vec![DVec3::ZERO; free], vec![u32::MAX; free], Vec::<u32>::new());
+    Rows::build(rows.len(), scratch, |(values, used, columns), vertex, made| {
         columns.clear();
         let mut add = |column: usize, value: DVec3| {
-            if column >= free {
-                return;
-            }
             if used[column] == vertex as u32 {
                 values[column] += value;
             } else {
@@ -242,17 +293,14 @@ fn differences(rows: &Rows<DVec3>, pairs: &Rows<()>, free: usize) -> Rows<DVec3>
             }
         };
         let others = pairs.columns(vertex);
-        for (column, value) in rows.row(vertex) {
-            add(column, value * others.len() as f64);
-        }
+        let count = others.len() as f64;
+        // Held vertices come behind the free ones.
+        let is_free = |(column, _): &(usize, DVec3)| *column < free;
+        rows.row(vertex).take_while(is_free).for_each(|(column, value)| add(column, value * count));
         for other in others {
-            for (column, value) in rows.row(*other as usize) {
-                add(column, -value);
-            }
+            rows.row(*other as usize).take_while(is_free).for_each(|(column, value)| add(column, -value));
         }
         columns.sort_unstable();
-        columns.iter().map(|column| (*column, values[*column as usize])).collect::<Vec<_>>()
-    };
-    let made = (0..rows.len()).into_par_iter().with_min_len(4096).map_init(empty, row);
-    Rows::collect(made.collect())
+        made.push(columns.iter().map(|column| (*column, values[*column as usize])));
+    })
 }

@@ -27,6 +27,7 @@ mod binding;
 mod error;
 mod handle;
 mod implicit;
+mod influence;
 mod options;
 mod patch;
 pub mod polar;

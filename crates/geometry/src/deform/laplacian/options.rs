@@ -44,6 +44,9 @@ pub struct BindReport {
     pub widened: usize,
     /// Bytes of both factors.
     pub factor_bytes: usize,
+    /// Bytes of what is kept of each handle's influence from when one first moves; 0 with more than 16 handles, where each
+    /// drag solves anew.
+    pub influence_bytes: usize,
 }
 
 /// Whether detail keeps its size.

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::error::BindError;
 use super::handle::Holds;
+use crate::linear_solver::nested_dissection::Graph;
 use crate::mesh::adjacency::Adjacency;
 use crate::mesh::manifold::ManifoldReport;
 use crate::mesh::triangulate::polygon_triangles;
@@ -108,6 +109,43 @@ impl Patch {
     /// Number of vertices.
     pub fn len(&self) -> usize {
         self.vertices.len()
+    }
+
+    /// The free vertices as unknowns of a matrix that couples them over `reach` edges, those of held vertices among them.
+    pub fn graph(&self, reach: u32) -> Graph {
+        let is_free = |vertex: u32| (vertex as usize) < self.free;
+        let mut lists = Vec::with_capacity(self.free);
+        for vertex in 0..self.free as u32 {
+            let mut list: Vec<u32> = Vec::new();
+            let mut passed: Vec<u32> = Vec::new();
+            let (mut from, mut steps) = (0, 1);
+            let mut look = |passed: &mut Vec<u32>, at: u32| {
+                for &next in self.adjacency.ring(at) {
+                    if is_free(next) {
+                        list.push(next);
+                    } else if !passed.contains(&next) {
+                        passed.push(next);
+                    }
+                }
+            };
+            look(&mut passed, vertex);
+            // On through what is held: across a narrow handle.
+            while steps < reach && from < passed.len() {
+                let end = passed.len();
+                for at in from..end {
+                    let held = passed[at];
+                    look(&mut passed, held);
+                }
+                (from, steps) = (end, steps + 1);
+            }
+            if !passed.is_empty() {
+                list.sort_unstable();
+                list.dedup();
+                list.retain(|other| *other != vertex);
+            }
+            lists.push(list);
+        }
+        Graph::new(&self.points[..self.free], lists.iter().map(Vec::as_slice), reach)
     }
 
     /// Weights of the edges at each vertex, by its neighbours in ascending order: the cotangents of both angles across,

@@ -55,7 +55,8 @@ impl Reconstruct {
         )?;
         drop((columns, scaled));
         go_on(0.5)?;
-        let factor = Cholesky::factor(&matrix)?;
+        let reach = if kind == Reconstruction::Edges { 1 } else { 2 };
+        let factor = Cholesky::factor_along(&matrix, &patch.graph(reach))?;
         go_on(1.0)?;
         Ok(Self { kind, laplacians, areas, factor })
     }

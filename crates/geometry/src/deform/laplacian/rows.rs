@@ -27,6 +27,36 @@ impl<T: Copy + Send + Sync> Rows<T> {
         self.starts.push(self.columns.len());
     }
 
+    /// As many rows as asked for, made on all threads: `make` adds one row behind those it gets, by [`Rows::push`], and has
+    /// a state of its own thread for scratch. Rows come in order, whatever the number of threads.
+    pub(super) fn build<S>(
+        rows: usize,
+        state: impl Fn() -> S + Sync,
+        make: impl Fn(&mut S, usize, &mut Self) + Sync,
+    ) -> Self {
+        let chunks: Vec<usize> = (0..rows).step_by(CHUNK).collect();
+        let made: Vec<Self> = chunks
+            .into_par_iter()
+            .map_init(&state, |state, first| {
+                let mut chunk = Self::new();
+                (first..rows.min(first + CHUNK)).for_each(|row| make(state, row, &mut chunk));
+                chunk
+            })
+            .collect();
+        let mut all = Self::new();
+        let entries = made.iter().map(|chunk| chunk.columns.len()).sum();
+        all.starts.reserve_exact(rows);
+        all.columns.reserve_exact(entries);
+        all.values.reserve_exact(entries);
+        for chunk in made {
+            let before = all.columns.len();
+            all.starts.extend(chunk.starts[1..].iter().map(|start| before + start));
+            all.columns.extend_from_slice(&chunk.columns);
+            all.values.extend_from_slice(&chunk.values);
+        }
+        all
+    }
+
     /// Rows computed apart and put one behind the other.
     pub(super) fn collect(rows: Vec<Vec<(u32, T)>>) -> Self {
         let mut all = Self::new();
@@ -61,23 +91,24 @@ impl<T: Copy + Send + Sync> Rows<T> {
     /// The first `columns` columns as rows.
     pub(super) fn transposed(&self, columns: usize) -> Self {
         let mut starts = vec![0_usize; columns + 1];
-        for column in &self.columns {
-            if (*column as usize) < columns {
-                starts[*column as usize + 1] += 1;
-            }
+        for column in self.columns.iter().filter(|column| (**column as usize) < columns) {
+            starts[*column as usize + 1] += 1;
         }
         for column in 0..columns {
             starts[column + 1] += starts[column];
         }
         let mut next = starts.clone();
-        let mut entries: Vec<Option<(u32, T)>> = vec![None; starts[columns]];
+        let mut rows = vec![0_u32; starts[columns]];
+        // Filled with any value first: every place is written once below.
+        let mut values: Vec<T> = self.values.first().map_or_else(Vec::new, |any| vec![*any; starts[columns]]);
         for row in 0..self.len() {
-            for (column, value) in self.row(row).filter(|(column, _)| *column < columns) {
-                entries[next[column]] = Some((row as u32, value));
-                next[column] += 1;
+            for (column, value) in self.row(row).take_while(|(column, _)| *column < columns) {
+                let place = &mut next[column];
+                (rows[*place], values[*place]) = (row as u32, value);
+                *place += 1;
             }
         }
-        let (columns, values) = entries.into_iter().flatten().unzip();
+        let columns = rows;
         Self { starts, columns, values }
     }
 }

@@ -110,7 +110,7 @@ pub fn smooth_mesh(
         &|| go_on(0.4),
     )?;
     go_on(0.6)?;
-    let factor = Cholesky::factor(&matrix)?;
+    let factor = Cholesky::factor_along(&matrix, &patch.graph(2))?;
     go_on(0.9)?;
     // -t^2 L A^-1 L x, by the rows.
     let mut sides = vec![DVec3::ZERO; patch.free];

@@ -31,7 +31,8 @@ const TRIANGLES: usize = 1 << 14;
 ///
 /// The nodes are those of the default scene (the first where none is set, all where there is none), parents before
 /// children. Lists, strips and fans of triangles are read and the primitives of a node joined; points and lines are
-/// ignored, and so are materials, textures, poses ([`skeleton`] gives the joints) and morph targets. Corners at equal positions share a vertex, whatever
+/// ignored, and so are textures, poses ([`skeleton`] gives the joints) and morph targets; of materials the triangles keep
+/// the names. Corners at equal positions share a vertex, whatever
 /// their normals and UVs; triangles of which two corners are one vertex are left out. Normals and UVs (v turned to
 /// run upward) are kept where every primitive of the node has them; a zero normal becomes that of its triangle. Nodes
 /// that mirror keep their outside outside. A mesh takes its node's name, else its own.
@@ -71,7 +72,7 @@ pub fn read_while(bytes: &[u8], progress: &dyn Fn(f64) -> bool) -> Result<Vec<Me
         let mut soup = TriangleSoup::new(placed.world);
         for (index, primitive) in source.primitives.iter().enumerate() {
             let place = format!("mesh {}, primitive {index}", placed.mesh.value());
-            let Some(attributes) = Attributes::of(primitive, &place)? else { continue };
+            let Some(attributes) = Attributes::of(root, primitive, &place)? else { continue };
             entries = entries.saturating_add(attributes.entry_count(&container, &place)?);
             if entries > most {
                 return Err(ReadError::Unsupported {

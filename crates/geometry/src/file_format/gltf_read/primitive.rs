@@ -6,13 +6,13 @@ use glam::{DMat3, DMat4, DVec2, DVec3};
 use gltf_json::accessor::{ComponentType, Type};
 use gltf_json::mesh::{Primitive, Semantic};
 use gltf_json::validation::Checked;
-use gltf_json::{Accessor, Index};
+use gltf_json::{Accessor, Index, Root};
 
 use super::container::{Container, Items};
 use super::{FORMAT, Layout, malformed};
 use crate::file_format::ReadError;
 use crate::file_format::pace::Pace;
-use crate::mesh::Mesh;
+use crate::mesh::{FaceNames, Mesh, NamedBy};
 
 /// Where a primitive of triangles keeps its data.
 pub(super) struct Attributes {
@@ -21,11 +21,13 @@ pub(super) struct Attributes {
     positions: Index<Accessor>,
     normals: Option<Index<Accessor>>,
     uvs: Option<Index<Accessor>>,
+    /// Name of the material; empty where there is none.
+    material: String,
 }
 
 impl Attributes {
     /// The attributes of a primitive, or `None` where it is made of points or lines.
-    pub(super) fn of(primitive: &Primitive, place: &str) -> Result<Option<Self>, ReadError> {
+    pub(super) fn of(root: &Root, primitive: &Primitive, place: &str) -> Result<Option<Self>, ReadError> {
         let Checked::Valid(mode) = primitive.mode else {
             return Err(malformed(place, "its mode is none that glTF knows"));
         };
@@ -33,12 +35,17 @@ impl Attributes {
         let attribute = |semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
         let positions =
             attribute(Semantic::Positions).ok_or_else(|| malformed(place, "it has no POSITION attribute"))?;
+        let material = primitive.material.map_or_else(String::new, |index| {
+            let name = root.materials.get(index.value()).and_then(|material| material.name.clone());
+            name.filter(|name| !name.is_empty()).unwrap_or_else(|| format!("material {}", index.value()))
+        });
         Ok(Some(Self {
             layout,
             indices: primitive.indices,
             positions,
             normals: attribute(Semantic::Normals),
             uvs: attribute(Semantic::TexCoords(0)),
+            material,
         }))
     }
 
@@ -77,6 +84,8 @@ pub(super) struct TriangleSoup {
     /// One entry a corner; `None` once a primitive has none.
     normals: Option<Vec<DVec3>>,
     uvs: Option<Vec<DVec2>>,
+    /// The name of each primitive's material, and behind which triangle it ends.
+    materials: Vec<(String, usize)>,
 }
 
 impl TriangleSoup {
@@ -98,6 +107,7 @@ impl TriangleSoup {
             triangles: Vec::new(),
             normals: Some(Vec::new()),
             uvs: Some(Vec::new()),
+            materials: Vec::new(),
         }
     }
 
@@ -186,6 +196,7 @@ impl TriangleSoup {
                 }
             }
         }
+        self.materials.push((attributes.material.clone(), self.triangles.len()));
         Ok(before + count)
     }
 
@@ -211,6 +222,11 @@ impl TriangleSoup {
         }
         if let Some(uvs) = self.uvs {
             mesh = mesh.with_uvs(uvs).map_err(failed)?;
+        }
+        if self.materials.iter().any(|(name, _)| !name.is_empty()) {
+            let starts = std::iter::once(0).chain(self.materials.iter().map(|(_, end)| *end));
+            let names = starts.zip(&self.materials).flat_map(|(start, (name, end))| (start..*end).map(move |_| name));
+            mesh = mesh.with_names(NamedBy::Material, FaceNames::new(names)).map_err(failed)?;
         }
         Ok(Some(mesh))
     }

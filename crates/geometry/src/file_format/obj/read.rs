@@ -1,18 +1,22 @@
 //! OBJ into meshes.
 
+use std::collections::BTreeMap;
+
 use glam::{DVec2, DVec3};
 
 use super::FORMAT;
 use crate::file_format::ReadError;
 use crate::file_format::pace::Pace;
-use crate::mesh::Mesh;
 use crate::mesh::measure::vector_area;
+use crate::mesh::{FaceNames, Mesh, NamedBy};
 
-/// The polygons of an OBJ, one mesh an object (`o`; groups where the file has no objects), in the file's order.
+/// The polygons of an OBJ, one mesh an object (`o`; one for all where the file has no objects), in the file's order.
 ///
+/// Groups (`g`, from one object to the next) and names of materials (`usemtl`) are kept at the polygons, where a mesh has
+/// any.
 /// Polygons keep their corners. Vertices keep their order; those no polygon uses are left out. Normals (brought to unit
 /// length; the polygon's own where one is zero) and UVs are kept where every corner of the object has one. Relative
-/// indices and continued lines are understood; materials, lines, points, vertex colours and free-form surfaces are
+/// indices and continued lines are understood; material libraries, lines, points, vertex colours and free-form surfaces are
 /// ignored. Bytes that are not UTF-8 are no error: they can only be part of names and comments.
 ///
 /// # Errors
@@ -34,7 +38,6 @@ pub fn read_while(bytes: &[u8], progress: &dyn Fn(f64) -> bool) -> Result<Vec<Me
     let mut pace = Pace::new(progress, 2 * bytes.len(), BYTES);
     pace.at(0)?;
     let mut read = 0;
-    let has_objects = text.lines().any(|line| line.split_whitespace().next() == Some("o"));
     let mut file = File::default();
     let mut continued = String::new();
     let mut first_line = 1;
@@ -51,15 +54,15 @@ pub fn read_while(bytes: &[u8], progress: &dyn Fn(f64) -> bool) -> Result<Vec<Me
             continue;
         }
         if continued.is_empty() {
-            file.take(trimmed, first_line, has_objects)?;
+            file.take(trimmed, first_line)?;
         } else {
             continued.push_str(trimmed);
-            file.take(&continued, first_line, has_objects)?;
+            file.take(&continued, first_line)?;
             continued.clear();
         }
     }
     if !continued.is_empty() {
-        file.take(&continued, first_line, has_objects)?;
+        file.take(&continued, first_line)?;
     }
     let whole: usize = file.objects.iter().map(|object| object.corners.len()).sum();
     let mut pace = Pace::new(progress, 2 * whole, CORNERS);
@@ -133,10 +136,17 @@ struct Object {
     ends: Vec<usize>,
     /// The line of each polygon.
     lines: Vec<usize>,
+    /// The places of each polygon's group and material in the file's list of names.
+    names: Vec<[u32; 2]>,
 }
 
 #[derive(Default)]
 struct File {
+    /// Groups and materials, the empty name first.
+    names: Vec<String>,
+    known: BTreeMap<String, u32>,
+    /// Group and material at this place of the file.
+    current: [u32; 2],
     positions: Vec<DVec3>,
     uvs: Vec<DVec2>,
     normals: Vec<DVec3>,
@@ -148,7 +158,7 @@ fn malformed(line: usize, problem: impl Into<String>) -> ReadError {
 }
 
 impl File {
-    fn take(&mut self, text: &str, line: usize, has_objects: bool) -> Result<(), ReadError> {
+    fn take(&mut self, text: &str, line: usize) -> Result<(), ReadError> {
         let mut words = text.split_whitespace();
         match words.next() {
             Some("v") => {
@@ -166,15 +176,32 @@ impl File {
             }
             Some("f") => self.take_polygon(words, line)?,
             Some("o") => self.begin_object(text),
-            Some("g") if !has_objects => self.begin_object(text),
+            Some("g") => self.current[0] = self.name(behind(text, "g")),
+            Some("usemtl") => self.current[1] = self.name(behind(text, "usemtl")),
             _ => {}
         }
         Ok(())
     }
 
     fn begin_object(&mut self, text: &str) {
-        let name = text.trim_start().get(1..).unwrap_or("").trim();
-        self.objects.push(Object { name: name.to_owned(), ..Object::default() });
+        self.current[0] = 0;
+        self.objects.push(Object { name: behind(text, "o").to_owned(), ..Object::default() });
+    }
+
+    /// The place of a name in the list.
+    fn name(&mut self, name: &str) -> u32 {
+        if self.names.is_empty() {
+            self.names.push(String::new());
+            self.known.insert(String::new(), 0);
+        }
+        if let Some(place) = self.known.get(name) {
+            return *place;
+        }
+        // There are no more names than bytes in the file, and no more of these than 32 bits count.
+        let place = self.names.len() as u32;
+        self.names.push(name.to_owned());
+        self.known.insert(name.to_owned(), place);
+        place
     }
 
     /// The first three numbers of a line; `needed` of them must be there, the others are 0 by default.
@@ -218,6 +245,7 @@ impl File {
         }
         object.ends.push(object.corners.len());
         object.lines.push(line);
+        object.names.push(self.current);
         Ok(())
     }
 
@@ -254,6 +282,12 @@ impl File {
         let failed = |source| ReadError::Mesh { name: object.name.clone(), source };
         let mut mesh = Mesh::from_corners(positions, corners, counts).map_err(failed)?.named(&object.name);
 
+        for (kind, by) in NamedBy::ALL.into_iter().enumerate() {
+            if object.names.iter().any(|names| names[kind] != 0) {
+                let names = object.names.iter().map(|names| self.names[names[kind] as usize].as_str());
+                mesh = mesh.with_names(by, FaceNames::new(names)).map_err(failed)?;
+            }
+        }
         let uvs: Option<Vec<DVec2>> = object.corners.iter().map(|corner| Some(self.uvs[corner.uv?])).collect();
         if let Some(uvs) = uvs {
             mesh = mesh.with_uvs(uvs).map_err(failed)?;
@@ -284,6 +318,11 @@ fn check_index(what: &str, index: usize, count: usize, line: usize) -> Result<()
         return Ok(());
     }
     Err(malformed(line, format!("{what} {} is used, but the file has only {count}", index.saturating_add(1))))
+}
+
+/// What stands behind the keyword of a line.
+fn behind<'a>(text: &'a str, keyword: &str) -> &'a str {
+    text.trim_start().strip_prefix(keyword).unwrap_or("").trim()
 }
 
 /// A corner such as `7`, `7/3`, `7//2` or `7/3/2`; negative indices count back from the last entry so far.

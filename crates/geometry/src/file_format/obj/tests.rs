@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::file_format::sample::{cuboid, cuboid_with_attributes, item, mixed_scene, sphere};
 use crate::file_format::{ReadError, WriteError};
-use crate::mesh::Mesh;
+use crate::mesh::{FaceNames, Mesh};
 use crate::scene::Scene;
 
 fn scene_of(mesh: Mesh) -> Scene {
@@ -124,17 +124,40 @@ fn the_many_ways_to_write_a_face_are_read() {
 }
 
 #[test]
-fn objects_are_meshes_and_groups_only_where_there_are_no_objects() {
+fn objects_are_meshes_and_groups_and_materials_are_names_of_faces() {
     let points = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 9 9 9\n";
     let names = |text: &str| {
         let meshes = read(format!("{points}{text}").as_bytes()).unwrap();
-        meshes.iter().map(|m| format!("{}:{}:{}", m.name(), m.positions().len(), m.polygon_count())).collect::<Vec<_>>()
+        let listed = |names: Option<&FaceNames>| names.map(|n| n.iter().collect::<Vec<_>>().join("|"));
+        let of = |m: &Mesh| {
+            let counts = format!("{}:{}:{}", m.name(), m.positions().len(), m.polygon_count());
+            format!("{counts} {:?} {:?}", listed(m.groups()), listed(m.materials()))
+        };
+        meshes.iter().map(of).collect::<Vec<_>>()
     };
     assert_eq!(
         names("o left arm\nusemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\no empty\no right\ng hand\nf 2 3 4\n"),
-        ["left arm:4:2", "right:3:1"]
+        [r#"left arm:4:2 None Some("a|b")"#, r#"right:3:1 Some("hand") Some("b")"#]
     );
-    assert_eq!(names("g one\nf 1 2 3\ng\ng two\nf 1 3 4\n"), ["one:3:1", "two:3:1"]);
+    let one = names("g one\nf 1 2 3\ng\nf 1 2 4\ng two of it\nf 1 3 4\ng one\nf 2 3 4\n");
+    assert_eq!(one, [r#"object:4:4 Some("one||two of it|one") None"#]);
+    assert_eq!(names("f 1 2 3\nusemtl\nf 1 3 4\n"), ["object:4:2 None None"]);
+}
+
+#[test]
+fn groups_and_materials_go_back_where_they_came_from() {
+    let text = "o hand\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng palm side\nusemtl skin\nf 1 2 3\ng\nf 1 3 4\n\
+        usemtl nail polish\nf 2 3 4\ng palm side\nf 1 2 4\n";
+    let mesh = read(text.as_bytes()).unwrap().remove(0);
+    let scene = scene_of(mesh.clone());
+    let written = String::from_utf8(write(&scene, None).unwrap()).unwrap();
+    assert_eq!(read(written.as_bytes()).unwrap(), [mesh]);
+    let behind = |text: &str| text[text.find("v 0 1 0\n").unwrap()..].to_owned();
+    assert_eq!(behind(&written), behind(text), "line by line");
+    // The library has a material for each name.
+    let library = String::from_utf8(material_library_bytes(&scene).unwrap()).unwrap();
+    let named: Vec<&str> = library.lines().filter_map(|line| line.strip_prefix("newmtl ")).collect();
+    assert_eq!(named[1..], ["skin", "nail polish"]);
 }
 
 #[test]

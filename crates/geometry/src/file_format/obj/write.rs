@@ -3,9 +3,10 @@
 use std::collections::HashMap;
 
 use super::FORMAT;
-use super::material::{material_names, one_word};
+use super::material::{material_names, one_line, one_word};
 use crate::file_format::WriteError;
 use crate::file_format::output::{check, distinct_corners, mesh_name, unique_names};
+use crate::mesh::FaceNames;
 use crate::scene::{CurveItem, MeshItem, Scene};
 
 /// The scene as OBJ.
@@ -13,7 +14,8 @@ use crate::scene::{CurveItem, MeshItem, Scene};
 /// Each output is one object (`o name`, blanks in names become `_`); polygons keep their corners, but for corners that
 /// repeat the vertex before them, as at poles. Normals and UVs stand at the corners (`vn`, `vt`). Each curve is a group
 /// (`g name`) and an `l` element; a closed one ends in its first point. Numbers have as many digits as it takes to
-/// read the same `f64` again. With `material_library`, the name of the `.mtl` beside the file, materials are named
+/// read the same `f64` again. Groups and materials of polygons are written where they change (`g`, `usemtl`). With
+/// `material_library`, the name of the `.mtl` beside the file, materials are named
 /// too: write [`material_library_bytes`](super::material_library_bytes) there.
 ///
 /// # Errors
@@ -35,9 +37,11 @@ pub fn write(scene: &Scene, material_library: Option<&str>) -> Result<Vec<u8>, W
         .chain(scene.curves.iter().map(|item| one_word(&item.name, "curves")))
         .collect();
     let mut names = unique_names(names.iter().map(String::as_str)).into_iter();
+    // A name lasts until the next one: where some meshes have names, all say theirs.
+    let named = material_library.is_some() || scene.meshes.iter().any(|item| item.mesh.materials().is_some());
     for (item, material) in scene.meshes.iter().zip(material_names(scene)) {
         let name = names.next().unwrap_or_default();
-        file.add_mesh(item, &name, material_library.map(|_| material.as_str()));
+        file.add_mesh(item, &name, named.then_some(material.as_str()));
     }
     for item in &scene.curves {
         let name = names.next().unwrap_or_default();
@@ -71,10 +75,22 @@ impl File {
         let normals: Option<Vec<usize>> = mesh.normals().map(|normals| {
             normals.iter().map(|normal| shared(&mut self.text, &mut self.normals, "vn", normal.to_array())).collect()
         });
-        if let Some(material) = material {
+        if let Some(material) = material.filter(|_| mesh.materials().is_none()) {
             self.text.push_str(&format!("usemtl {material}\n"));
         }
-        for corners in (0..mesh.polygon_count()).filter_map(|polygon| distinct_corners(mesh, polygon)) {
+        let mut groups = Changes::of(mesh.groups());
+        let mut materials = Changes::of(mesh.materials());
+        for polygon in 0..mesh.polygon_count() {
+            let Some(corners) = distinct_corners(mesh, polygon) else { continue };
+            if let Some(group) = groups.at(polygon) {
+                self.text.push_str(format!("g {}", one_line(group)).trim_end());
+                self.text.push('\n');
+            }
+            if let Some(name) = materials.at(polygon) {
+                // A polygon without a name has the material of the output.
+                let name = if name.is_empty() { material.map(str::to_owned) } else { Some(one_line(name)) };
+                name.into_iter().for_each(|name| self.text.push_str(&format!("usemtl {name}\n")));
+            }
             self.text.push('f');
             for corner in corners {
                 let vertex = self.vertices + 1 + mesh.corners()[corner] as usize;
@@ -104,6 +120,24 @@ impl File {
             }
             self.text.push('\n');
         }
+    }
+}
+
+/// Where the name of polygons changes.
+struct Changes<'a> {
+    names: Option<&'a FaceNames>,
+    last: Option<&'a str>,
+}
+
+impl<'a> Changes<'a> {
+    fn of(names: Option<&'a FaceNames>) -> Self {
+        Self { names, last: None }
+    }
+
+    /// The name of a polygon where it is not that of the one asked for before.
+    fn at(&mut self, polygon: usize) -> Option<&'a str> {
+        let name = self.names?.name(polygon);
+        (self.last.replace(name) != Some(name)).then_some(name)
     }
 }
 

@@ -2,6 +2,7 @@
 //! they hold when the mesh changes.
 
 mod lasso;
+mod named;
 mod near;
 mod selection;
 mod shape;
@@ -11,6 +12,7 @@ mod surface;
 mod tests;
 
 pub use lasso::by_lasso;
+pub use named::{NameError, by_name};
 pub use near::{Picked, by_points, near_mesh};
 pub use selection::{Selection, SelectionError};
 pub use shape::{Shape, by_shape};

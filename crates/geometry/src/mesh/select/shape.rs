@@ -44,9 +44,16 @@ pub enum Shape<'a> {
 /// Weight 1 for the vertices in a shape, falling to 0 over `falloff` metres outside it; with a falloff of 0 the shape
 /// ends sharply. As vertices count as selected from a weight of 0.5 on, the shape grows by half the falloff.
 ///
+/// `progress` is called with the fraction done; `Ok(None)` where it answers `false`.
+///
 /// # Errors
 /// [`SelectError`] for numbers that are not finite, negative lengths and a normal of length 0.
-pub fn by_shape(mesh: &Mesh, shape: &Shape<'_>, falloff: f64) -> Result<Selection, SelectError> {
+pub fn by_shape(
+    mesh: &Mesh,
+    shape: &Shape<'_>,
+    falloff: f64,
+    progress: &dyn Fn(f64) -> bool,
+) -> Result<Option<Selection>, SelectError> {
     let length = |what: &'static str, value: f64| match value {
         value if !value.is_finite() => Err(SelectError::NotFinite { what }),
         value if value < 0.0 => Err(SelectError::Negative { what, value }),
@@ -88,7 +95,26 @@ pub fn by_shape(mesh: &Mesh, shape: &Shape<'_>, falloff: f64) -> Result<Selectio
         }
     };
     let weight = |vertex: usize| ramp(distance(mesh.positions()[vertex]), falloff);
-    Ok(Selection::weighted(mesh.positions().len(), weight))
+    Ok(weighted_while(mesh.positions().len(), weight, progress))
+}
+
+/// Vertices between two questions whether to go on.
+const STEP: usize = 4096;
+
+/// A selection with a weight for each vertex, or `None` where `progress` answers `false`.
+pub(super) fn weighted_while(
+    vertices: usize,
+    weight: impl Fn(usize) -> f64,
+    progress: &dyn Fn(f64) -> bool,
+) -> Option<Selection> {
+    let mut weights = Vec::with_capacity(vertices);
+    for vertex in 0..vertices {
+        if vertex.is_multiple_of(STEP) && !progress(vertex as f64 / vertices as f64) {
+            return None;
+        }
+        weights.push(weight(vertex));
+    }
+    Some(Selection::weighted(vertices, |vertex| weights[vertex]))
 }
 
 /// 1 up to a distance of 0, from there falling to 0 at `falloff`.

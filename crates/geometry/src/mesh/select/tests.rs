@@ -2,11 +2,13 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use glam::{DQuat, DVec3};
+use glam::{DAffine3, DQuat, DVec3};
 
 use super::*;
 use crate::curve::Curve;
-use crate::mesh::{Adjacency, Mesh};
+use crate::mesh::caps::{CapOptions, cap};
+use crate::mesh::weld::{WeldOptions, weld};
+use crate::mesh::{Adjacency, FaceNames, Mesh, NamedBy, flipped, join, transform};
 
 /// A net of 5 x 5 vertices in the plane y = 0, facing up, x and z from 0 to 4; vertex `5 z + x`.
 fn net() -> Mesh {
@@ -17,6 +19,26 @@ fn net() -> Mesh {
 
 fn chosen(selection: Result<Selection, SelectError>) -> Vec<u32> {
     selection.unwrap().vertices()
+}
+
+fn by_shape(mesh: &Mesh, shape: &Shape<'_>, falloff: f64) -> Result<Selection, SelectError> {
+    super::by_shape(mesh, shape, falloff, &|_| true).map(Option::unwrap)
+}
+
+fn component_nearest(mesh: &Mesh, point: DVec3) -> Result<Selection, SelectError> {
+    super::component_nearest(mesh, point, &|_| true).map(Option::unwrap)
+}
+
+fn boundary_loop_nearest(mesh: &Mesh, point: DVec3) -> Result<Selection, SelectError> {
+    super::boundary_loop_nearest(mesh, point, &|_| true).map(Option::unwrap)
+}
+
+fn geodesic(mesh: &Mesh, points: &[DVec3], distance: f64, falloff: f64) -> Result<Selection, SelectError> {
+    super::geodesic(mesh, points, distance, falloff, &|_| true).map(Option::unwrap)
+}
+
+fn by_normal(mesh: &Mesh, direction: DVec3, angle: f64, falloff: f64) -> Result<Selection, SelectError> {
+    super::by_normal(mesh, direction, angle, falloff, &|_| true).map(Option::unwrap)
 }
 
 #[test]
@@ -130,4 +152,47 @@ fn selections_grow_shrink_and_smooth_by_edges() {
     assert_eq!(middle.grown(&adjacency, usize::MAX).unwrap().vertices().len(), 25);
     let other = Selection::by(3, |_| true);
     assert_eq!(other.smoothed(&adjacency, 1), Err(SelectionError::Sizes { first: 3, second: 25 }));
+}
+
+/// The net with two rows of faces of one group and two of another, and the last face without a material.
+fn named() -> Mesh {
+    let groups = FaceNames::new((0..16).map(|face| if face < 8 { "near" } else { "far" }));
+    let materials = FaceNames::new((0..16).map(|face| if face < 15 { "cloth" } else { "" }));
+    let net = net().with_names(NamedBy::Group, groups).unwrap();
+    net.with_names(NamedBy::Material, materials).unwrap()
+}
+
+fn counts(names: Option<&FaceNames>) -> Vec<(String, usize)> {
+    let Some(names) = names else { return Vec::new() };
+    let count = |name: &String| (name.clone(), names.iter().filter(|other| other == name).count());
+    names.names().iter().map(count).collect()
+}
+
+#[test]
+fn names_of_faces_go_where_the_faces_go() {
+    let mesh = named();
+    let owned = |list: &[(&str, usize)]| list.iter().map(|(name, n)| ((*name).to_owned(), *n)).collect::<Vec<_>>();
+    // Cut in the middle of the third row.
+    let selection = Selection::weighted(25, |v| 1.0 - mesh.positions()[v].z / 5.0);
+    let [near, far] = split(&mesh, &selection).unwrap();
+    assert_eq!(counts(near.groups()), owned(&[("near", 8), ("far", 4)]));
+    assert_eq!(counts(far.groups()), owned(&[("far", 8)]));
+    assert_eq!(counts(far.materials()), owned(&[("cloth", 7), ("", 1)]));
+    // Moved, mirrored and turned inside out, polygon by polygon.
+    let mirrored = transform(&mesh, &DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0))).unwrap();
+    assert_eq!((mirrored.groups(), mirrored.materials()), (mesh.groups(), mesh.materials()));
+    assert_eq!(flipped(&mesh).unwrap().groups(), mesh.groups());
+    // Joined to one that has none.
+    let joined = join([&net(), &mesh]).unwrap();
+    assert_eq!(counts(joined.groups()), owned(&[("", 16), ("near", 8), ("far", 8)]));
+    assert_eq!(counts(join([&net(), &net()]).unwrap().groups()), []);
+    // Closed by a cap, whose faces have no name.
+    let capped = cap(&mesh, &CapOptions::default()).unwrap().mesh;
+    let found = counts(capped.groups());
+    assert_eq!(found[..2], owned(&[("near", 8), ("far", 8)]));
+    assert!(found[2].0.is_empty() && found[2].1 == capped.polygon_count() - 16 && found[2].1 > 0);
+    // Welded.
+    let beside = transform(&mesh, &DAffine3::from_translation(DVec3::new(4.0, 0.0, 0.0))).unwrap();
+    let welded = weld(&[&mesh, &beside], &WeldOptions::default()).unwrap().mesh;
+    assert_eq!(counts(welded.groups()), owned(&[("near", 16), ("far", 16)]));
 }

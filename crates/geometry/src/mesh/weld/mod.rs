@@ -119,7 +119,9 @@ pub fn weld_while(parts: &[&Mesh], options: &WeldOptions, progress: &dyn Fn(f64)
     }
     told(0.5)?;
     let corners = joined.corners().iter().map(|vertex| new[*vertex as usize]).collect();
-    let mut mesh = Mesh::from_corners(positions, corners, joined.polygons().map(<[u32]>::len))?.named(joined.name());
+    let mut mesh = Mesh::from_corners(positions, corners, joined.polygons().map(<[u32]>::len))?
+        .named(joined.name())
+        .named_like(&joined);
     told(0.6)?;
     let (seams, normals) = seam::seams(&joined, &mesh, &boundary, &matched.pairs, options, &|| told(0.6))?;
     if let Some(normals) = normals {

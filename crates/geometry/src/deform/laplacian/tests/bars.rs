@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use super::super::*;
-use super::{bar, bind, both, deform, edge_error, select};
+use super::{apart, bar, bind, both, deform, edge_error, select};
 use crate::mesh::{Mesh, measure};
 
 /// A bar of 1 x 1 x 6 whose lower and upper half metre are handles; the upper one goes as if the line in the middle of
@@ -47,6 +47,23 @@ fn taking_the_shear_out_is_what_keeps_the_bar() {
     let dragged = mesh.with_positions(dragged, None).unwrap();
     let made = deform(&bound, &[HandleTransform::default(), turn], Passes::Once);
     assert!(volume(&mesh, &made.mesh) > 1.3 * volume(&mesh, &dragged));
+}
+
+#[test]
+fn without_turning_the_bar_collapses() {
+    let mesh = bar(6, 36, true);
+    let (low, high) = (select(&mesh, |p| p.y < 0.5), select(&mesh, |p| p.y > 5.5));
+    let bound = bind(&mesh, &both([&low, &high]), Reconstruction::Coordinates).unwrap();
+    let still = bound.without_turning(&[HandleTransform::default(); 2]).unwrap();
+    assert!(apart(&mesh, &still) < 1e-12);
+    let angle = 120.0_f64.to_radians();
+    let turn = HandleTransform::rotation(DVec3::new(-5.0 / angle, 0.5, 0.0), DVec3::Z, angle);
+    let turn = turn.shifted(turn.linear() * (-5.0 * DVec3::Y));
+    let plain = bound.without_turning(&[HandleTransform::default(), turn]).unwrap();
+    let plain = mesh.with_positions(plain, None).unwrap();
+    let made = deform(&bound, &[HandleTransform::default(), turn], Passes::Once).mesh;
+    assert!(volume(&mesh, &plain) < 0.8 * volume(&mesh, &made));
+    assert!(edge_error(&mesh, &plain) > 1.25 * edge_error(&mesh, &made));
 }
 
 #[test]

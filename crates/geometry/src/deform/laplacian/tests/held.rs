@@ -175,7 +175,7 @@ fn what_makes_no_sense_is_refused() {
     assert_eq!(bound.deform(&infinite, &DeformOptions::default(), &|_| true), Err(refused));
     let flat = [HandleTransform::scale(DVec3::ZERO, 0.0)];
     assert_eq!(bound.drag(&flat), Err(DeformError::Handle { handle: 0, source: HandleError::NotOriented }));
-    let far = [HandleTransform::translation(DVec3::splat(1e308))];
+    let far = [HandleTransform::scale(DVec3::splat(1e308), 10.0)];
     assert_eq!(bound.drag(&far).map(|_| ()), Err(DeformError::Overflow));
 }
 
