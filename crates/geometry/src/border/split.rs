@@ -11,6 +11,10 @@ const TOO_NEAR: f64 = 0.25;
 /// Points of the border nearer to a corner than this share of their mean distance are left out.
 const BESIDE: f64 = 0.75;
 
+/// Points of a side that tell of its corner are at least this many of their mean distances from one another: what is
+/// uncertain about the normals of nearer ones would count for too much.
+const APART: f64 = 1.5;
+
 /// Why a border is not split.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SplitBorderError {
@@ -104,7 +108,7 @@ pub fn split(border: &Border, corners: &[DVec3], count: usize) -> Result<Vec<Bor
         .map(|corner| {
             let (before, after) = (&sides[(corner + cuts.len() - 1) % cuts.len()], &sides[corner]);
             let told = |k: &usize| (point(*k), normal(*k));
-            let apart = BESIDE * spacing;
+            let apart = APART * spacing;
             let beside = [
                 apart_from_one_another(before.iter().rev().map(told), apart),
                 apart_from_one_another(after.iter().map(told), apart),
