@@ -21,9 +21,12 @@ const MOST_HANDLES: usize = 16;
 pub(super) struct Influence {
     /// The fixed point: in the middle, so that far from the origin nothing cancels.
     centre: DVec3,
-    /// By handle and free vertex; metres, and without unit.
-    fields: Vec<Vec<(DVec3, f64)>>,
+    /// By handle.
+    fields: Vec<Field>,
 }
+
+/// By free vertex: metres, and without unit.
+type Field = Vec<(DVec3, f64)>;
 
 impl Influence {
     /// The bytes it takes, where it pays: for few handles, whose fields take no more room than the factor.
@@ -64,7 +67,7 @@ impl Influence {
     /// Displacements of the free vertices, put in their places, where the handles map by `linear` and shift the centre by
     /// what `shift_of` gives for it.
     pub fn apply(&self, linear: &[DMat3], shift_of: &dyn Fn(usize, DVec3) -> DVec3, displacements: &mut [DVec3]) {
-        let moved: Vec<(DMat3, DVec3, &Vec<(DVec3, f64)>)> = (0..self.fields.len())
+        let moved: Vec<(DMat3, DVec3, &Field)> = (0..self.fields.len())
             .map(|handle| (linear[handle] - DMat3::IDENTITY, shift_of(handle, self.centre), &self.fields[handle]))
             .filter(|(linear, shift, _)| *linear != DMat3::ZERO || *shift != DVec3::ZERO)
             .collect();
