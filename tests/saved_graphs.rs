@@ -98,12 +98,13 @@ fn every_saved_graph_is_tested_here() {
     assert_eq!(
         saved,
         [
-            "eye-socket",
-            "blend",
-            "chest",
             "bar-bent",
             "bar-twisted",
+            "blend",
             "body-posed",
+            "chest",
+            "eye-socket",
+            "fist",
             "forearm",
             "forearm-sheet",
             "from-image",
@@ -122,11 +123,12 @@ fn every_saved_graph_is_tested_here() {
             "open-strokes",
             "patch",
             "sea-star",
-            "shoulder-cap",
             "shoulder",
+            "shoulder-cap",
+            "teapot",
             "torso",
             "vest",
-            "warrior"
+            "warrior",
         ]
         .map(str::to_owned)
         .into(),
