@@ -123,5 +123,26 @@ fn drag(c: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, idle, large, drag);
+/// The window as a picture, with all four views drawn anew: what the machine's renderer takes, apart from our own work.
+fn renderer(c: &mut Criterion) {
+    let mut window = egui_kittest::Harness::builder()
+        .with_size(vec2(1440.0, 900.0))
+        .renderer(egui_kittest::wgpu::WgpuTestRenderer::new())
+        .build_eframe(|context| App::new(context, Options { path: Some(vest()), ..Options::default() }).unwrap());
+    while !window.state().results().is_current() {
+        window.run_steps(1);
+    }
+    let mut grid = false;
+    c.bench_function("a picture of the vest by the machine's renderer", |b| {
+        b.iter(|| {
+            // A picture that looks as before would not be drawn again.
+            grid = !grid;
+            window.state_mut().settings_mut().grid = grid;
+            window.run_steps(1);
+            black_box(window.render().unwrap())
+        });
+    });
+}
+
+criterion_group!(benches, idle, large, drag, renderer);
 criterion_main!(benches);
