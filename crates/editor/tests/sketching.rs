@@ -11,15 +11,8 @@ mod support;
 use egui::{Key, Modifiers, Pos2};
 use maquette_editor::command::ViewCommand;
 use maquette_editor::{Direction, Options};
-use maquette_graph::{Literal, Stroke};
+use maquette_graph::Literal;
 use support::*;
-
-fn strokes(window: &Window, node: &str) -> Vec<Stroke> {
-    match literal(window, node, "strokes") {
-        Some(Literal::Strokes(strokes)) => strokes,
-        other => panic!("{node} holds {other:?}"),
-    }
-}
 
 /// A line through points of the world, as it is seen in a view, drawn in many small moves.
 fn pen(window: &Window, direction: Direction, label: &str, points: &[[f64; 3]]) -> Vec<Pos2> {

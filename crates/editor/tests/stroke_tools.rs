@@ -15,15 +15,8 @@ use egui_kittest::kittest::Queryable as _;
 use maquette_editor::command::{FileCommand, StrokeDeed, ViewCommand};
 use maquette_editor::view_state::Tool;
 use maquette_editor::{Direction, Options};
-use maquette_graph::{Literal, Stroke, file};
+use maquette_graph::{Stroke, file};
 use support::*;
-
-fn strokes(window: &Window, node: &str) -> Vec<Stroke> {
-    match literal(window, node, "strokes") {
-        Some(Literal::Strokes(strokes)) => strokes,
-        other => panic!("{node} holds {other:?}"),
-    }
-}
 
 /// A graph with one sketch in the front view: a bar along x at a height of 1 m, and one at 1.2 m.
 const BARS: &str = r#"(

@@ -80,11 +80,13 @@ impl<'a> PanelContext<'a> {
         shown.path == self.view.path
     }
 
-    /// Whether surfaces of something are drawn, and not only its lines: of what is displayed, or of the results.
-    pub(crate) fn is_drawn(&self, shown: &Shown) -> bool {
-        match self.view.displayed_within {
-            Some(node) => self.is_here(shown) && shown.node == node,
-            None => shown.path.is_empty() && self.view.drawn(self.document.graph()).contains(&shown.node),
+    /// Whether surfaces of something are drawn, and not only its lines: of what is displayed, or of the results. Asked of each
+    /// thing that is shown; what the whole graph shows is found once.
+    pub(crate) fn drawn(&self) -> impl Fn(&Shown) -> bool + use<'a> {
+        let (view, whole) = (self.view, self.view.drawn(self.document.graph()));
+        move |shown| match view.displayed_within {
+            Some(node) => shown.path == view.path && shown.node == node,
+            None => shown.path.is_empty() && whole.contains(&shown.node),
         }
     }
 

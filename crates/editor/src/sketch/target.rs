@@ -116,12 +116,14 @@ pub(crate) fn points(stroke: &Stroke) -> Vec<DVec2> {
 
 /// A point as a stroke holds it: to a hundredth of a millimetre, which no pen can draw and every file can show.
 pub(crate) fn stroke_point(point: DVec2) -> StrokePoint {
-    let rounded = |x: f64| {
-        let x = (x * 1e5).round() / 1e5;
-        // Minus zero would be written as such.
-        if x == 0.0 { 0.0 } else { x }
-    };
-    StrokePoint { x: rounded(point.x), y: rounded(point.y), pressure: None }
+    let point = rounded(point);
+    StrokePoint { x: point.x, y: point.y, pressure: None }
+}
+
+/// A point of a plane to a hundredth of a millimetre.
+pub(crate) fn rounded(point: DVec2) -> DVec2 {
+    // Minus zero would be written as such: in a sum with zero it is none.
+    (point * 1e5).round() / 1e5 + DVec2::ZERO
 }
 
 #[cfg(test)]

@@ -81,9 +81,10 @@ pub(crate) fn picture(context: &PanelContext<'_>, of: &PictureOf<'_>, grid: &Gri
         lines.extend(grid.axes.iter().map(|(axis, line)| own(std::slice::from_ref(line), AXES[*axis], 1.5)));
     }
     let active = context.view.active;
+    let is_drawn = context.drawn();
     let mut surfaces = Vec::new();
     for shown in context.results.shown() {
-        let is_drawn = context.is_drawn(shown);
+        let is_drawn = is_drawn(shown);
         let is_active = context.is_here(shown) && active == Some(shown.node);
         if context.view.displayed_within.is_some() && !is_drawn && !is_active {
             continue;

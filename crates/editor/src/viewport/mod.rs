@@ -121,7 +121,10 @@ impl ViewPane {
     fn frame(&mut self, context: &PanelContext<'_>, size: ViewSize) {
         // What is displayed alone is framed alone, without the strokes around it.
         let alone = context.view.displayed_within.is_some();
-        let all = || bounds(context, |shown| context.is_drawn(shown) || !alone && context.is_here(shown), |_| !alone);
+        let all = || {
+            let is_drawn = context.drawn();
+            bounds(context, |shown| is_drawn(shown) || !alone && context.is_here(shown), |_| !alone)
+        };
         let framed = match self.framing {
             Framing::Keep => return,
             Framing::All => all(),

@@ -13,6 +13,7 @@ use crate::command::GraphCommand;
 use crate::panel::PanelContext;
 
 use super::draw::AXES;
+use super::pick::near_segment;
 use super::sketch_tool::ToolView;
 
 /// Length of an arrow on the screen, points.
@@ -154,12 +155,12 @@ impl Moved {
         }
         let arrow = (0..3).find(|axis| {
             let tip = self.tip(view, *axis).filter(|tip| (*tip - middle).length() > SHORT);
-            tip.is_some_and(|tip| distance(at, middle, tip) <= REACH)
+            tip.is_some_and(|tip| near_segment(at, middle, tip).0 <= REACH)
         });
         let ring = self.ring(view);
         arrow
             .map(Part::Arrow)
-            .or_else(|| ring.windows(2).any(|pair| distance(at, pair[0], pair[1]) <= REACH).then_some(Part::Ring))
+            .or_else(|| ring.windows(2).any(|pair| near_segment(at, pair[0], pair[1]).0 <= REACH).then_some(Part::Ring))
     }
 
     /// Where on the ring's plane the pointer is, as an angle; `None` where the plane is seen from its edge.
@@ -192,14 +193,6 @@ impl Moved {
         let towards = ray.dot(back);
         (towards.abs() > 1e-6).then(|| origin + ray * ((self.anchor - origin).dot(back) / towards))
     }
-}
-
-/// Distance of a point from a segment, points.
-fn distance(at: egui::Vec2, from: egui::Vec2, to: egui::Vec2) -> f32 {
-    let along = to - from;
-    let length = along.length_sq();
-    let share = if length > 0.0 { ((at - from).dot(along) / length).clamp(0.0, 1.0) } else { 0.0 };
-    (from + along * share - at).length()
 }
 
 fn rounded(value: f64, step: f64) -> f64 {

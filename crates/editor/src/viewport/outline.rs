@@ -34,7 +34,8 @@ impl OutlineError {
     /// Measures again where something changed.
     pub(crate) fn update(&mut self, context: &PanelContext<'_>, direction: Direction) {
         let Some(plane) = Plane::of_view(direction) else { return };
-        let shown = context.results.shown().iter().filter(|shown| context.is_drawn(shown));
+        let is_drawn = context.drawn();
+        let shown = context.results.shown().iter().filter(|shown| is_drawn(shown));
         let drawables: Vec<_> = shown.flat_map(|shown| &shown.drawables).collect();
         let ids = drawables.iter().map(|drawable| drawable.id).collect();
         let key = Some((ids, context.document.revision(), context.view.active));

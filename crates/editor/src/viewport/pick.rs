@@ -53,10 +53,7 @@ pub(crate) fn near_line(
         let seen = camera.project(size, point).map(|seen| (seen, point));
         if let Some((seen, point)) = seen {
             let (from, start) = before.unwrap_or((seen, point));
-            let along = seen - from;
-            let length = along.length_sq();
-            let share = if length > 0.0 { ((at - from).dot(along) / length).clamp(0.0, 1.0) } else { 0.0 };
-            let distance = (from + along * share - at).length();
+            let (distance, share) = near_segment(at, from, seen);
             if least.is_none_or(|(least, _)| distance < least) {
                 least = Some((distance, start.lerp(point, f64::from(share))));
             }
@@ -64,6 +61,14 @@ pub(crate) fn near_line(
         before = seen;
     }
     least
+}
+
+/// Distance of a point of the screen from a segment, points, and how far along the segment that is, from 0 to 1.
+pub(crate) fn near_segment(at: egui::Vec2, from: egui::Vec2, to: egui::Vec2) -> (f32, f32) {
+    let along = to - from;
+    let length = along.length_sq();
+    let share = if length > 0.0 { ((at - from).dot(along) / length).clamp(0.0, 1.0) } else { 0.0 };
+    ((from + along * share - at).length(), share)
 }
 
 fn line(shown: &[Shown], camera: &Camera, size: ViewSize, at: egui::Vec2) -> Option<NodeId> {

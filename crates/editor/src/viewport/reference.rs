@@ -7,7 +7,7 @@ use maquette_graph::ReferencePicture;
 use crate::command::{Command, GraphCommand, Message};
 use crate::panel::PanelContext;
 use crate::reference_pictures::PictureState;
-use crate::sketch::target::Plane;
+use crate::sketch::target::{Plane, rounded};
 
 use super::camera::{Camera, Direction, ViewSize};
 use super::sketch_tool::ToolView;
@@ -227,15 +227,6 @@ impl PictureTool {
         let font = egui::FontId::proportional(12.0);
         painter.text(a.lerp(b, 0.5) + egui::vec2(8.0, -8.0), egui::Align2::LEFT_BOTTOM, text, font, ACCENT);
     }
-}
-
-/// To a hundredth of a millimetre, as strokes are.
-fn rounded(at: DVec2) -> DVec2 {
-    let round = |x: f64| {
-        let x = (x * 1e5).round() / 1e5;
-        if x == 0.0 { 0.0 } else { x }
-    };
-    DVec2::new(round(at.x), round(at.y))
 }
 
 /// A new picture in a view: in the middle of what it shows, as large as half of it.

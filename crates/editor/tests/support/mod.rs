@@ -8,7 +8,7 @@ use egui::{Event, Key, Modifiers, PointerButton, Pos2, Vec2, pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use maquette_editor::{App, Direction, Options};
-use maquette_graph::{Literal, NodeId, OutcomeState, Source, file};
+use maquette_graph::{Literal, NodeId, OutcomeState, Source, Stroke, file};
 
 pub type Window = Harness<'static, App>;
 
@@ -72,6 +72,14 @@ pub fn literal(window: &Window, node: &str, input: &str) -> Option<Literal> {
     match window.state().document().graph().node(find(window, node))?.source(input)? {
         Source::Literal { literal, .. } => Some(literal.clone()),
         _ => None,
+    }
+}
+
+/// The strokes that a node holds.
+pub fn strokes(window: &Window, node: &str) -> Vec<Stroke> {
+    match literal(window, node, "strokes") {
+        Some(Literal::Strokes(strokes)) => strokes,
+        other => panic!("{node} holds {other:?}"),
     }
 }
 

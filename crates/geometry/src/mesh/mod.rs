@@ -28,6 +28,7 @@ pub mod topology;
 pub mod transform;
 mod triangle_tree;
 pub mod triangulate;
+pub(crate) mod vertex_polygons;
 pub mod weights;
 pub mod weld;
 

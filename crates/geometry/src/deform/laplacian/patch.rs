@@ -8,6 +8,7 @@ use crate::linear_solver::nested_dissection::Graph;
 use crate::mesh::adjacency::Adjacency;
 use crate::mesh::manifold::ManifoldReport;
 use crate::mesh::triangulate::polygon_triangles;
+use crate::mesh::vertex_polygons::VertexPolygons;
 use crate::mesh::weights::{cotangents, mixed_areas};
 use crate::mesh::{Mesh, measure};
 
@@ -63,10 +64,10 @@ impl Patch {
                 gradient[vertex as usize] = if *holds == Holds::Position { None } else { by };
             }
         }
-        let stars = Stars::new(mesh);
+        let stars = VertexPolygons::new(mesh);
         for vertex in 0..count {
             let held = position[vertex].is_some() || gradient[vertex].is_some();
-            if (!held && !in_region(vertex)) || stars.of(vertex).is_empty() {
+            if (!held && !in_region(vertex)) || stars.of(vertex as u32).is_empty() {
                 let by = position[vertex].or(Some(Holder::Still));
                 (position[vertex], gradient[vertex]) = (by, gradient[vertex].or(by));
             }
@@ -76,7 +77,7 @@ impl Patch {
         for (index, vertex) in vertices.iter().enumerate() {
             local[*vertex as usize] = index as u32;
         }
-        let mut polygons: Vec<u32> = vertices.iter().flat_map(|v| stars.of(*v as usize)).copied().collect();
+        let mut polygons: Vec<u32> = vertices.iter().flat_map(|v| stars.of(*v)).copied().collect();
         polygons.sort_unstable();
         polygons.dedup();
         polygons.retain(|p| mesh.polygon(*p as usize).iter().all(|v| local[*v as usize] != u32::MAX));
@@ -176,41 +177,8 @@ impl Patch {
     }
 }
 
-/// The polygons at each vertex.
-struct Stars {
-    starts: Vec<u32>,
-    polygons: Vec<u32>,
-}
-
-impl Stars {
-    fn new(mesh: &Mesh) -> Self {
-        // Corners have 32-bit places, see `Mesh`.
-        let mut starts = vec![0_u32; mesh.positions().len() + 1];
-        for vertex in mesh.corners() {
-            starts[*vertex as usize + 1] += 1;
-        }
-        for vertex in 1..starts.len() {
-            starts[vertex] += starts[vertex - 1];
-        }
-        let mut next = starts.clone();
-        let mut polygons = vec![0; mesh.corners().len()];
-        for (polygon, corners) in mesh.polygons().enumerate() {
-            for vertex in corners {
-                let place = &mut next[*vertex as usize];
-                polygons[*place as usize] = polygon as u32;
-                *place += 1;
-            }
-        }
-        Self { starts, polygons }
-    }
-
-    fn of(&self, vertex: usize) -> &[u32] {
-        &self.polygons[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
-    }
-}
-
 /// The free vertices, then those within three polygons of them; both ascending. And the number of the free ones.
-fn reach(mesh: &Mesh, stars: &Stars, position: &[Option<Holder>]) -> (Vec<u32>, usize) {
+fn reach(mesh: &Mesh, stars: &VertexPolygons, position: &[Option<Holder>]) -> (Vec<u32>, usize) {
     let mut vertices: Vec<u32> = (0..position.len() as u32).filter(|v| position[*v as usize].is_none()).collect();
     let free = vertices.len();
     let mut reached: Vec<bool> = position.iter().map(Option::is_none).collect();
@@ -218,7 +186,7 @@ fn reach(mesh: &Mesh, stars: &Stars, position: &[Option<Holder>]) -> (Vec<u32>, 
     for _ in 0..HALO {
         let end = vertices.len();
         for i in edge..end {
-            for polygon in stars.of(vertices[i] as usize) {
+            for polygon in stars.of(vertices[i]) {
                 for &vertex in mesh.polygon(*polygon as usize) {
                     if !reached[vertex as usize] {
                         reached[vertex as usize] = true;

@@ -7,41 +7,11 @@ use glam::DVec3;
 use super::rim::Rim;
 use crate::curve::closest;
 use crate::mesh::topology::EdgeUse;
+use crate::mesh::vertex_polygons::VertexPolygons;
 use crate::mesh::{Mesh, measure};
 
-/// The polygons around each vertex.
-pub(super) struct Around {
-    /// Where those of each vertex begin, and behind the last one the number of all.
-    starts: Vec<u32>,
-    polygons: Vec<u32>,
-}
-
-impl Around {
-    pub(super) fn new(mesh: &Mesh) -> Self {
-        let mut starts = vec![0; mesh.positions().len() + 1];
-        mesh.corners().iter().for_each(|vertex| starts[*vertex as usize + 1] += 1);
-        for vertex in 1..starts.len() {
-            starts[vertex] += starts[vertex - 1];
-        }
-        let mut next = starts.clone();
-        let mut polygons = vec![0; mesh.corners().len()];
-        for (polygon, corners) in mesh.polygons().enumerate() {
-            for vertex in corners {
-                let place = &mut next[*vertex as usize];
-                polygons[*place as usize] = polygon as u32;
-                *place += 1;
-            }
-        }
-        Self { starts, polygons }
-    }
-
-    fn of(&self, vertex: u32) -> &[u32] {
-        &self.polygons[self.starts[vertex as usize] as usize..self.starts[vertex as usize + 1] as usize]
-    }
-}
-
 /// The uses of all edges of the polygons that are gone, and of some others, sorted by edge, then polygon.
-fn uses_near(mesh: &Mesh, around: &Around, gone: &[bool]) -> Vec<EdgeUse> {
+fn uses_near(mesh: &Mesh, around: &VertexPolygons, gone: &[bool]) -> Vec<EdgeUse> {
     let going = (0..gone.len()).filter(|polygon| gone[*polygon]);
     let mut near: Vec<u32> =
         going.flat_map(|polygon| mesh.polygon(polygon)).flat_map(|vertex| around.of(*vertex)).copied().collect();
@@ -74,7 +44,7 @@ pub(super) struct Collar {
 impl Collar {
     /// The faces with a vertex within `reach` of the border, over the surface. The error is a place on another border
     /// that they reach.
-    pub(super) fn of(mesh: &Mesh, around: &Around, rim: &Rim, reach: f64) -> Result<Self, DVec3> {
+    pub(super) fn of(mesh: &Mesh, around: &VertexPolygons, rim: &Rim, reach: f64) -> Result<Self, DVec3> {
         let mut gone = vec![false; mesh.polygon_count()];
         // Whether a vertex is within reach, as far as it was looked at.
         let mut taken: Vec<Option<bool>> = vec![None; mesh.positions().len()];
@@ -154,7 +124,7 @@ impl Collar {
         }
     }
 
-    fn finished(mesh: &Mesh, gone: Vec<bool>, around: &Around, outline: Vec<u32>) -> Self {
+    fn finished(mesh: &Mesh, gone: Vec<bool>, around: &VertexPolygons, outline: Vec<u32>) -> Self {
         let mut normals = BTreeMap::new();
         for &vertex in &outline {
             let mut sum = DVec3::ZERO;
@@ -191,7 +161,7 @@ fn loops_of(mut next: BTreeMap<u32, u32>) -> Vec<Vec<u32>> {
 }
 
 /// The polygons that remain and hang together with those at these vertices.
-fn reached(mesh: &Mesh, around: &Around, gone: &[bool], from: &[u32]) -> Vec<bool> {
+fn reached(mesh: &Mesh, around: &VertexPolygons, gone: &[bool], from: &[u32]) -> Vec<bool> {
     let mut reached = vec![false; gone.len()];
     let mut open = from.to_vec();
     while let Some(vertex) = open.pop() {

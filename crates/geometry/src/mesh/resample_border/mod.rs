@@ -14,10 +14,11 @@ use glam::{DVec2, DVec3};
 
 use super::distance::{MeshDistance, NoPolygons, nearest_on_triangle};
 use super::triangulate::polygon_triangles;
+use super::vertex_polygons::VertexPolygons;
 use super::{Mesh, MeshError};
 use crate::border::Border;
 use crate::curve::{SplineError, closest, place};
-use collar::{Around, Collar};
+use collar::Collar;
 use rim::Rim;
 
 /// Fewest and most points of a border.
@@ -201,7 +202,7 @@ fn replaced(
     let told = |share: f64| if progress(share) { Ok(()) } else { Err(E::Stopped) };
     let at = rim.centre();
     let mut fold = at;
-    let around = Around::new(mesh);
+    let around = VertexPolygons::new(mesh);
     for (attempt, reach) in REACHES.into_iter().enumerate() {
         told(0.2 + 0.1 * attempt as f64)?;
         let collar = match Collar::of(mesh, &around, rim, reach * even.spacing) {

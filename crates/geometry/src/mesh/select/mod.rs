@@ -52,3 +52,12 @@ pub enum SelectError {
     #[error("the mesh is closed, and has no boundary loop")]
     NoBoundary,
 }
+
+/// Asks whether a length or an angle is finite and not negative.
+fn not_negative(what: &'static str, value: f64) -> Result<(), SelectError> {
+    match value {
+        value if !value.is_finite() => Err(SelectError::NotFinite { what }),
+        value if value < 0.0 => Err(SelectError::Negative { what, value }),
+        _ => Ok(()),
+    }
+}

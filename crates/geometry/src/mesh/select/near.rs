@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::shape::ramp;
-use super::{SelectError, Selection};
+use super::{SelectError, Selection, not_negative};
 use crate::mesh::{Mesh, MeshDistance};
 
 /// Vertices between two questions whether to go on.
@@ -23,14 +23,8 @@ pub fn near_mesh(
     falloff: f64,
     progress: &dyn Fn(f64) -> bool,
 ) -> Result<Option<Selection>, SelectError> {
-    for (what, value) in [("distance", distance), ("falloff", falloff)] {
-        if !value.is_finite() {
-            return Err(SelectError::NotFinite { what });
-        }
-        if value < 0.0 {
-            return Err(SelectError::Negative { what, value });
-        }
-    }
+    not_negative("distance", distance)?;
+    not_negative("falloff", falloff)?;
     let to = MeshDistance::new(other).map_err(|_| SelectError::NoOther)?;
     let count = mesh.positions().len();
     let mut weights = vec![0.0; count];
@@ -68,12 +62,7 @@ pub fn by_points(
     tolerance: f64,
     progress: &dyn Fn(f64) -> bool,
 ) -> Result<Option<(Selection, Vec<Picked>)>, SelectError> {
-    if !tolerance.is_finite() {
-        return Err(SelectError::NotFinite { what: "tolerance" });
-    }
-    if tolerance < 0.0 {
-        return Err(SelectError::Negative { what: "tolerance", value: tolerance });
-    }
+    not_negative("tolerance", tolerance)?;
     if points.iter().any(|p| !p.is_finite()) {
         return Err(SelectError::NotFinite { what: "point" });
     }

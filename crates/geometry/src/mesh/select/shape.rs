@@ -2,7 +2,7 @@
 
 use glam::{DQuat, DVec3};
 
-use super::{SelectError, Selection};
+use super::{SelectError, Selection, not_negative};
 use crate::curve::{Curve, closest};
 use crate::mesh::Mesh;
 
@@ -54,20 +54,15 @@ pub fn by_shape(
     falloff: f64,
     progress: &dyn Fn(f64) -> bool,
 ) -> Result<Option<Selection>, SelectError> {
-    let length = |what: &'static str, value: f64| match value {
-        value if !value.is_finite() => Err(SelectError::NotFinite { what }),
-        value if value < 0.0 => Err(SelectError::Negative { what, value }),
-        _ => Ok(()),
-    };
     let point = |what: &'static str, value: DVec3| {
         if value.is_finite() { Ok(()) } else { Err(SelectError::NotFinite { what }) }
     };
-    length("falloff", falloff)?;
+    not_negative("falloff", falloff)?;
     let distance: Box<dyn Fn(DVec3) -> f64> = match *shape {
         Shape::Cuboid { centre, half, rotation } => {
             point("centre", centre)?;
             for size in half.to_array() {
-                length("size of the box", size)?;
+                not_negative("size of the box", size)?;
             }
             if !rotation.is_finite() || rotation.length_squared() == 0.0 {
                 return Err(SelectError::NotFinite { what: "rotation" });
@@ -80,7 +75,7 @@ pub fn by_shape(
         }
         Shape::Sphere { centre, radius } => {
             point("centre", centre)?;
-            length("radius", radius)?;
+            not_negative("radius", radius)?;
             Box::new(move |p| p.distance(centre) - radius)
         }
         Shape::HalfSpace { point: on, normal } => {
@@ -90,7 +85,7 @@ pub fn by_shape(
             Box::new(move |p| (on - p).dot(normal))
         }
         Shape::Capsule { curve, radius } => {
-            length("radius", radius)?;
+            not_negative("radius", radius)?;
             Box::new(move |p| closest(curve, p).distance - radius)
         }
     };

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::shape::{ramp, weighted_while};
-use super::{SelectError, Selection};
+use super::{SelectError, Selection, not_negative};
 use crate::mesh::geodesic::{Geodesics, starts_at};
 use crate::mesh::measure::vector_area;
 use crate::mesh::{Adjacency, Mesh, Topology};
@@ -77,14 +77,8 @@ pub fn geodesic(
     falloff: f64,
     progress: &dyn Fn(f64) -> bool,
 ) -> Result<Option<Selection>, SelectError> {
-    for (what, value) in [("distance", distance), ("falloff", falloff)] {
-        if !value.is_finite() {
-            return Err(SelectError::NotFinite { what });
-        }
-        if value < 0.0 {
-            return Err(SelectError::Negative { what, value });
-        }
-    }
+    not_negative("distance", distance)?;
+    not_negative("falloff", falloff)?;
     if points.iter().any(|p| !p.is_finite()) {
         return Err(SelectError::NotFinite { what: "point" });
     }
@@ -119,14 +113,8 @@ pub fn by_normal(
     falloff: f64,
     progress: &dyn Fn(f64) -> bool,
 ) -> Result<Option<Selection>, SelectError> {
-    for (what, value) in [("angle", angle), ("falloff", falloff)] {
-        if !value.is_finite() {
-            return Err(SelectError::NotFinite { what });
-        }
-        if value < 0.0 {
-            return Err(SelectError::Negative { what, value });
-        }
-    }
+    not_negative("angle", angle)?;
+    not_negative("falloff", falloff)?;
     if !direction.is_finite() {
         return Err(SelectError::NotFinite { what: "direction" });
     }
